@@ -136,7 +136,7 @@ def keep_references(
         place = place_of(uri)
         if with_companions and isinstance(part, Mesh) and place in shelf.copies:
             copy_companions(part.uri, place, shelf.copies[place], shelf, files)
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)
 
 
 def with_prefix(mechanism: Mechanism, prefix: str, paths: Set[str]) -> Mechanism:
@@ -144,13 +144,13 @@ def with_prefix(mechanism: Mechanism, prefix: str, paths: Set[str]) -> Mechanism
     changed: dict[Id, Mesh | Texture] = {
         key: replace(part, uri=f"{prefix}/{part.uri}") for key, part in mechanism.assets() if part.uri in paths
     }
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)
 
 
 def unloaded(mechanism: Mechanism) -> Mechanism:
     """The mechanism without the triangles of its mesh files, which only the writer needs."""
     plain = {key: Mesh(mesh.uri, mesh.scale, mesh.name) for key, mesh in mechanism.vertices(Mesh) if type(mesh) is not Mesh}
-    return mechanism.with_graph(mechanism.graph.replace(vertices=plain)) if plain else mechanism
+    return mechanism.replace(vertices=plain)
 
 
 def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> str | None:
@@ -224,7 +224,7 @@ def _with_meshes_of_source(mechanism: Mechanism, files: Files, report: Report) -
             if other is not None:
                 changed[key] = replace(listed(other[0]), scale=mesh.scale, name=mesh.name)
                 report.note(codes.ASSET_CONVERTED, f"{key} {other[1]}", mechanism.origin(key), element=str(key))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)
 
 
 # ---- meshes whose files are missing -----------------------------------------------------------------------------------

@@ -40,7 +40,7 @@ def with_same_files(a: Contents, b: Contents) -> Mechanism:
         other = b.mechanism.graph.vertices.get(key)
         if type(other) is type(part) and _reference(other) != _reference(part) and not any(_of_asset(key, a, b, pieces)):
             changed[key] = _with_reference(other, part)
-    mechanism = b.mechanism.with_graph(b.mechanism.graph.replace(vertices=changed)) if changed else b.mechanism
+    mechanism = b.mechanism.replace(vertices=changed)
     return _with_same_extras(a, b, mechanism)
 
 

@@ -30,7 +30,7 @@ def meshes_as_files(mechanism: Mechanism, image: Mechanism, fetch: Fetch) -> Mec
         other = image.graph.vertices.get(key)
         if mesh.vertices and isinstance(other, Mesh) and other.uri is not None and not other.vertices and _is_in(mesh, other.uri, fetch):
             changed[key] = replace(mesh, uri=other.uri, vertices=(), faces=(), texcoords=(), texfaces=())
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)
 
 
 def without_points(mechanism: Mechanism, others: Mechanism) -> Mechanism:
@@ -40,7 +40,7 @@ def without_points(mechanism: Mechanism, others: Mechanism) -> Mechanism:
         for key, mesh in mechanism.vertices(Mesh)
         if mesh.uri is None and mesh.vertices and others.vertex(key, Mesh).uri is not None
     }
-    return mechanism.with_graph(mechanism.graph.replace(vertices=bare)) if bare else mechanism
+    return mechanism.replace(vertices=bare)
 
 
 def with_points_of_files(mechanism: Mechanism, fetch: Fetch) -> Mechanism:
@@ -65,7 +65,7 @@ def with_points_of_files(mechanism: Mechanism, fetch: Fetch) -> Mechanism:
             if part is not None:
                 changed[key] = replace(listed(part), scale=mesh.scale, name=mesh.name)
     others = {key: found for key, found in mechanism.stored.items() if key not in changed}
-    return replace(mechanism.with_graph(mechanism.graph.replace(vertices=changed)), stored=others)
+    return replace(mechanism.replace(vertices=changed), stored=others)
 
 
 def _is_in(mesh: Mesh, uri: str, fetch: Fetch) -> bool:

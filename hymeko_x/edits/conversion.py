@@ -77,7 +77,7 @@ class Conversion:
         """The robot with its transmissions as they were: gains and ranges of the actuators that they become have no place in them."""
         own = {key: part for key, part in self.mechanism.vertices(Actuator) if part.kind == "transmission"}
         changed = {key: part for key, part in own.items() if robot.graph.vertices.get(key, part) != part}
-        return robot.with_graph(robot.graph.replace(vertices=changed)) if changed else robot
+        return robot.replace(vertices=changed)
 
     def missing(self, source: Source) -> list[str]:
         """The edits that did not arrive, in words: what the edited file has otherwise than ORIGINAL with its new text, converted again."""
@@ -103,7 +103,7 @@ class Conversion:
         if not bare or formats.native_format(self.mechanism) is self.format:
             return self.edited
         complete = pipeline.completed(self.edited, self.home, self.files, Report())
-        return self.edited.with_graph(self.edited.graph.replace(vertices={key: complete.graph.vertices[key] for key in bare}))
+        return self.edited.replace(vertices={key: complete.graph.vertices[key] for key in bare})
 
     def _guess(self, options: Options, place: pipeline.Place) -> Guess:
         image = self._converted(self.mechanism, options, place, self.source.files)

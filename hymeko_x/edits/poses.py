@@ -23,7 +23,7 @@ def with_edited_poses(robot: Mechanism, image: Mechanism, edited: Mechanism, for
         values = next((moved[arc.target.name] for arc in arcs if arc.sign > 0 and arc.target.name in moved), {})
         if any(arc.target in values for arc in arcs):
             changed[key] = Edge(Stance(), tuple([_at(arc, values) for arc in arcs]))
-    return robot.with_graph(robot.graph.replace(edges=changed)) if changed else robot
+    return robot.replace(edges=changed)
 
 
 Poses = dict[str, "Mapping[Id, tuple[float, ...]]"]

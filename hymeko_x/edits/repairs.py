@@ -71,7 +71,7 @@ def _with_inertials(mechanism: Mechanism, options: Options, context: Context) ->
         return mechanism
     density = WATER if options.density is None else options.density
     bare = {key: body.inertial for key, body in mechanism.vertices(Body) if not _is_whole(body.inertial)}
-    emptied = mechanism.with_graph(mechanism.graph.replace(vertices=dict.fromkeys(bare, Body())))
+    emptied = mechanism.replace(vertices=dict.fromkeys(bare, Body()))
     weighed = give_inertials(emptied, density, options.inertia_from, Context(Report(), context.files))
     given: dict[Id, Body] = {}
     for key, own in bare.items():
@@ -85,7 +85,7 @@ def _with_inertials(mechanism: Mechanism, options: Options, context: Context) ->
         else:
             given[key] = Body(shaped)
             _note(context, mechanism, key, f"{key}: a mass of {shaped.mass:.4g} kg and the inertia of its shapes, with {density:g} kg/m^3")
-    return mechanism.with_graph(mechanism.graph.replace(vertices=given)) if given else mechanism
+    return mechanism.replace(vertices=given)
 
 
 def _is_whole(inertial: Inertial | None) -> bool:
@@ -140,7 +140,7 @@ def _mend_joints(mechanism: Mechanism, context: Context, not_unit: frozenset[str
             _note(context, mechanism, key, f"{key}: {message}")
         if any(each.repairs for each in mended):
             edges[key] = Edge(replace(joint, dofs=tuple([each.dof for each in mended])), arcs)
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+    return mechanism.replace(edges=edges)
 
 
 def _mended(dof: Dof, *, is_unit: bool) -> _Mended:
@@ -178,7 +178,7 @@ def _mend_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
             found[key] = replace(body, inertial=mended)
             message = f"{key}: the inertia tensor {numbers_text(inertial.tensor)} becomes {numbers_text(tensor)}, which a body can have"
             _note(context, mechanism, key, message)
-    return mechanism.with_graph(mechanism.graph.replace(vertices=found)) if found else mechanism
+    return mechanism.replace(vertices=found)
 
 
 # ---- shapes ------------------------------------------------------------------------------------------------------------------
@@ -192,7 +192,7 @@ def _mend_sizes(mechanism: Mechanism, context: Context) -> Mechanism:
         if sizes:
             edges[key] = Edge(replace(shape, geometry=structs.replace(shape.geometry, **sizes)), arcs)
             _note(context, mechanism, key, f"{key}: a negative {' and '.join(sizes)} loses its sign")
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+    return mechanism.replace(edges=edges)
 
 
 def _positive(geometry: Geometry) -> Iterator[tuple[str, float | tuple[float, ...]]]:

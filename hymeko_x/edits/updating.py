@@ -160,7 +160,7 @@ def _with_new_assets(before: Mechanism, after: Mechanism, edited: Source) -> tup
     for key, part in after.assets():
         if isinstance(part, Mesh | Texture) and part.uri in names:
             changed[key] = replace(part, uri=names[part.uri])
-    return (after.with_graph(after.graph.replace(vertices=changed)) if changed else after), contents
+    return (after.replace(vertices=changed)), contents
 
 
 def _is_below(uri: str) -> bool:

@@ -46,23 +46,22 @@ def _with_fault(robot: Mechanism, fault: str, chance: random.Random) -> Mechanis
     leaves = [key for key in bodies if key not in robot.children and key in robot.parent_joint]
     joints = list(robot.joints.values())
     body = chance.choice(bodies)
-    graph = robot.graph
     if fault == "no inertia":
-        return robot.with_graph(graph.replace(vertices={body: parts.Body()}))
+        return robot.replace(vertices={body: parts.Body()})
     if fault == "no shapes":
-        return robot.with_graph(graph.replace(without=[view.id for view in robot.shapes.get(body, ())]))
+        return robot.replace(without=[view.id for view in robot.shapes.get(body, ())])
     if fault == "no link" and leaves:
         leaf = chance.choice(leaves)
-        gone = {leaf, *(view.id for view in robot.shapes.get(leaf, ())), *(key for key, _, _ in graph.edges_at(leaf))}
-        return robot.with_graph(graph.replace(without=gone))
+        gone = {leaf, *(view.id for view in robot.shapes.get(leaf, ())), *(key for key, _, _ in robot.graph.edges_at(leaf))}
+        return robot.replace(without=gone)
     if fault == "made-up link":
         extra = Id("body", "tool_link")
         edges = {Id("joint", "tool_joint"): joint_edge(parts.Joint(), body, extra)}
-        return robot.with_graph(graph.replace(vertices={extra: parts.Body()}, edges=edges))
+        return robot.replace(vertices={extra: parts.Body()}, edges=edges)
     if fault == "mass":
         inertial = robot.vertex(body, parts.Body).inertial
         heavier = None if inertial is None or inertial.mass is None else replace(inertial, mass=inertial.mass * 10)
-        return robot.with_graph(graph.replace(vertices={body: parts.Body(heavier)})) if heavier else robot
+        return robot.replace(vertices={body: parts.Body(heavier)}) if heavier else robot
     return _with_joint_fault(robot, fault, chance.choice(joints).id) if fault in NUMBERS and joints else robot
 
 
@@ -78,4 +77,4 @@ def _with_joint_fault(robot: Mechanism, fault: str, key: Id) -> Mechanism:
         wrong = replace(first, axis=(y, z, x)) if fault == "axis" else replace(first, limits=replace(first.limits, upper=0.5, lower=-0.5))
         joint = parts.Joint((replace(wrong, written=None), *joint.dofs[1:]))
     edge: Edge[Id, parts.EdgePart, parts.Weight] = joint_edge(joint, view.parent, view.child, place, view.child_pose)
-    return robot.with_graph(robot.graph.replace(edges={key: edge}))
+    return robot.replace(edges={key: edge})

@@ -86,4 +86,4 @@ class Builder(Struct, kw_only=True):
 
     def added_to(self, mechanism: Mechanism, without: Iterable[Id] = ()) -> Mechanism:
         """A mechanism with the new vertices and edges, which replace those of the same ids, and without some elements."""
-        return mechanism.with_graph(mechanism.graph.replace(vertices=self.vertices, edges=self.edges, without=without))
+        return mechanism.replace(vertices=self.vertices, edges=self.edges, without=without)

@@ -28,7 +28,7 @@ from hymeko_x.ir.views import ShapeView as ShapeView
 from hymeko_x.ir.views import SubsetView as SubsetView
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.diagnostics import Origin
     from hymeko_x.ir.notations import Notation
@@ -293,6 +293,18 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
         """How the author wrote something of an element, or None."""
         text = self.notations.get(key, _NO_NOTATIONS).get(notation.name)
         return None if text is None else notation.read(text)
+
+    def replace(
+        self,
+        *,
+        vertices: Mapping[Id, parts.VertexPart] | None = None,
+        edges: Mapping[Id, RobotEdge] | None = None,
+        without: Iterable[Id] = (),
+    ) -> Mechanism:
+        """The mechanism with these elements added or exchanged in their place, and without the ones named; itself where nothing changes."""
+        graph = self.graph.replace(vertices=vertices, edges=edges, without=without)
+        is_same = graph.vertices is self.graph.vertices and graph.edges is self.graph.edges
+        return self if is_same else self.with_graph(graph)
 
     def with_graph(self, graph: RobotGraph) -> Mechanism:
         """The same mechanism with another graph. What is known of its edges stays known where they are the same table."""

@@ -90,7 +90,7 @@ def with_references_of(printed: Mechanism, mechanism: Mechanism) -> Mechanism:
     row = formats.of_source(mechanism)
     if row is not None and row.tells_places is not None and printed.extras is not mechanism.extras:
         mechanism = replace(mechanism, extras=_with_places_of(printed, mechanism, formats.loaded(row.tells_places)))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=moved)) if moved else mechanism
+    return mechanism.replace(vertices=moved)
 
 
 def _with_places_of(printed: Mechanism, mechanism: Mechanism, tells_places: Callable[[Extra], bool]) -> dict[Id, tuple[Extra, ...]]:

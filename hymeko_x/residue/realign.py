@@ -50,7 +50,7 @@ def _with_world(mechanism: Mechanism) -> Mechanism:
     """A body that was renamed to the world is the world from now on."""
     if not isinstance(mechanism.graph.vertices.get(WORLD), Body):
         return mechanism
-    return mechanism.with_graph(mechanism.graph.replace(vertices={WORLD: World()}))
+    return mechanism.replace(vertices={WORLD: World()})
 
 
 def alignment_differences(alignment: Alignment) -> Iterator[Difference]:
@@ -136,7 +136,7 @@ def join_twins(mechanism: Mechanism, joins: Iterable[Join]) -> Mechanism:
             continue
         edges[shape] = replace(seen, data=replace(_shape(seen), role=Role.BOTH))
         gone.append(twin)
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=gone)) if edges else mechanism
+    return mechanism.replace(edges=edges, without=gone) if edges else mechanism
 
 
 def are_twins(seen: RobotEdge, touched: RobotEdge) -> bool:
@@ -172,7 +172,7 @@ def move_frames(mechanism: Mechanism, frames: Mapping[Id, Pose]) -> Mechanism:
     edges = {
         key: _edge_seen_from(edge, back) for key, edge in mechanism.graph.edges.items() if any(arc.target in back for arc in edge.arcs)
     }
-    return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
+    return mechanism.replace(vertices=vertices, edges=edges)
 
 
 def _inertial_seen_from(inertial: Inertial, back: Pose) -> Inertial:
@@ -227,7 +227,7 @@ def with_new_names(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
     back = {old: new for new, old in names.items()}
     dofs = {old.name: new.name for old, new in back.items() if old.kind == "joint"}
     edges = {key: _with_dof_names(edge, dofs) for key, edge in mechanism.graph.edges.items() if isinstance(edge.data, Joint)}
-    return _renamed(mechanism.with_graph(mechanism.graph.replace(edges=edges)), back)
+    return _renamed(mechanism.replace(edges=edges), back)
 
 
 def _renamed(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:

@@ -56,4 +56,4 @@ def without_actuators(mechanism: Mechanism, actuators: list[Id]) -> Mechanism:
         return mechanism
     gone = set(actuators)
     drives = [key for key, _, arcs in mechanism.edges(Drive) if any(arc.target in gone for arc in arcs)]
-    return mechanism.with_graph(mechanism.graph.replace(without=[*gone, *drives]))
+    return mechanism.replace(without=[*gone, *drives])

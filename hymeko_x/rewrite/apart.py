@@ -58,4 +58,4 @@ def _with_dof_names(mechanism: Mechanism, dofs: dict[Id, dict[str, str]]) -> Mec
         elif isinstance(data, Coupling | Drive | Sense | Tendon) and any(arc.target in dofs for arc in edge.arcs):
             arcs = [replace(arc, role=dofs.get(arc.target, {}).get(arc.role, arc.role)) for arc in edge.arcs]
             edges[key] = replace(edge, arcs=tuple(arcs))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+    return mechanism.replace(edges=edges)

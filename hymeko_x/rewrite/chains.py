@@ -53,7 +53,7 @@ def chain_dofs(mechanism: Mechanism, context: Context, chained: list[JointView],
             context.report.note(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
     edges = edges_to_moved_dofs(mechanism, chains.moved) | chains.edges
     old = {view.id for view in chained}
-    return mechanism.with_graph(mechanism.graph.replace(vertices=chains.vertices, edges=edges, without=old - set(chains.edges)))
+    return mechanism.replace(vertices=chains.vertices, edges=edges, without=old - set(chains.edges))
 
 
 def _add_chain(view: JointView, chains: _Chains, *, keeps_balls: bool) -> int:

@@ -69,7 +69,7 @@ def _with_bases(mechanism: Mechanism, *, is_free: bool, report: Report) -> Mecha
     joint, suffix = (Joint((Dof(DofKind.FREE, Z),)), "free") if is_free else (Joint(), "base")
     edges = {names.take("joint", f"{root.name}_{suffix}"): joint_edge(joint, WORLD, root) for root in open_bases}
     mechanism = with_world(mechanism)
-    mechanism = mechanism.with_graph(mechanism.graph.replace(edges=edges))
+    mechanism = mechanism.replace(edges=edges)
     if is_free:
         return mechanism
     unnamed = {key: {UNNAMED.name: UNNAMED.write(True)} for key in edges}
@@ -116,7 +116,7 @@ def with_actuators(mechanism: Mechanism, kind: str, report: Report) -> Mechanism
         report.note(
             codes.REWRITTEN, f"{counted(len(present), 'actuator')} of the source {what}, as asked", element=str(next(iter(present)))
         )
-    return bare.with_graph(bare.graph.replace(vertices=vertices, edges=edges))
+    return bare.replace(vertices=vertices, edges=edges)
 
 
 def _report_gains(mechanism: Mechanism, carried: Mapping[tuple[Id, int], Load], report: Report) -> None:

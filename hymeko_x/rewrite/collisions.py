@@ -58,7 +58,7 @@ def make_collisions_convex(mechanism: Mechanism, kind: Kind, context: Context) -
         return mechanism
     _report({key: new for key, new in found.items() if new is not None}, kind, context)
     notations = {**mechanism.notations, **{key: {UNNAMED.name: UNNAMED.write(True)} for key in edges if key not in mechanism.graph.edges}}
-    return replace(mechanism.with_graph(mechanism.graph.replace(vertices=meshes, edges=edges, without=gone)), notations=notations)
+    return replace(mechanism.replace(vertices=meshes, edges=edges, without=gone), notations=notations)
 
 
 def _colliding(mechanism: Mechanism) -> list[ShapeView]:

@@ -49,7 +49,7 @@ def make_couplings_scalar(mechanism: Mechanism, context: Context) -> Mechanism:
                 mechanism.origin(key),
                 element=str(key),
             )
-    return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
+    return mechanism.replace(without=gone)
 
 
 def _problem(mechanism: Mechanism, arcs: tuple[RobotArc, ...]) -> str | None:
@@ -106,7 +106,7 @@ def drop_odd_tendons(mechanism: Mechanism, context: Context) -> Mechanism:
     hanging = [key for key, edge in mechanism.graph.edges.items() if _hangs_on(edge, gone)]
     ends = {arc.target for key in hanging for arc in mechanism.graph.edges[key].arcs}
     things = [end for end in ends if end.kind in ("actuator", "sensor")]
-    return mechanism.with_graph(mechanism.graph.replace(without=[*gone, *hanging, *things]))
+    return mechanism.replace(without=[*gone, *hanging, *things])
 
 
 def _nowhere(mechanism: Mechanism, arcs: tuple[RobotArc, ...], placed: set[Id]) -> str | None:
@@ -136,7 +136,7 @@ def make_tendons_sound(mechanism: Mechanism, context: Context) -> Mechanism:
             tell(codes.REWRITTEN, f"{key}: {text}", mechanism.origin(key), element=str(key))
         if sound != tendon:
             changed[key] = Edge(sound, arcs)
-    return mechanism.with_graph(mechanism.graph.replace(edges=changed)) if changed else mechanism
+    return mechanism.replace(edges=changed)
 
 
 def name_wrapped_shapes(mechanism: Mechanism, _context: Context) -> Mechanism:
@@ -151,4 +151,4 @@ def name_wrapped_shapes(mechanism: Mechanism, _context: Context) -> Mechanism:
         name = free_name(key.name, taken.__contains__, "_")
         taken.add(name)
         changed[key] = replace(edge, data=replace(edge.data, name=name))
-    return mechanism.with_graph(mechanism.graph.replace(edges=changed)) if changed else mechanism
+    return mechanism.replace(edges=changed)

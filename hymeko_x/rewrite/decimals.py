@@ -41,11 +41,9 @@ def shorten_computed(mechanism: Mechanism, source: Mechanism) -> Mechanism:
     if not vertices and not edges:
         return mechanism
     known = _known(source)
-    return mechanism.with_graph(
-        mechanism.graph.replace(
-            vertices={key: _shortened(part, known) for key, part in vertices.items()},
-            edges={key: _shortened(edge, known) for key, edge in edges.items()},
-        )
+    return mechanism.replace(
+        vertices={key: _shortened(part, known) for key, part in vertices.items()},
+        edges={key: _shortened(edge, known) for key, edge in edges.items()},
     )
 
 

@@ -108,7 +108,7 @@ def _weighed(mechanism: Mechanism, bare: list[Id], density: float, source: Sourc
         if inertial is not None:
             found[key] = Body(inertial)
     _report(found, bare, solids, source, context)
-    return mechanism.with_graph(mechanism.graph.replace(vertices=found)) if found else mechanism
+    return mechanism.replace(vertices=found)
 
 
 def _chosen(views: Iterable[ShapeView], source: Source | None) -> list[ShapeView]:

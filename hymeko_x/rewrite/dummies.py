@@ -54,7 +54,7 @@ def make_dummies_frames(mechanism: Mechanism, context: Context) -> Mechanism:
     shown = listed([f"'{body.name}'" for body in held], _SHOWN)
     message = f"{counted(len(held), 'link')} without mass and shapes written as frames ({context.reason}): {shown}"
     context.report.note(codes.FOR_TARGET, message, element=str(next(iter(held))))
-    moved = mechanism.with_graph(mechanism.graph.replace(vertices=frames, edges=edges))
+    moved = mechanism.replace(vertices=frames, edges=edges)
     return without(moved, [*contacts, *removed, *held])
 
 

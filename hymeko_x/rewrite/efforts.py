@@ -45,7 +45,7 @@ def limit_efforts_by_actuators(mechanism: Mechanism, context: Context) -> Mechan
     shown = listed([f"'{joint.name}' {effort:g}" for (joint, _), effort in efforts.items()], _SHOWN)
     message = f"effort limits are what the actuators can exert: {shown}"
     context.report.note(codes.REWRITTEN, message, element=str(next(iter(edges))))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges))
+    return mechanism.replace(edges=edges)
 
 
 def actuator_efforts(mechanism: Mechanism) -> Mapping[tuple[Id, int], float]:

@@ -48,7 +48,7 @@ def mount_sensors_of_fragments(mechanism: Mechanism, context: Context) -> Mechan
     shown = listed([f"'{key.name}'" for key in found], _SHOWN)
     message = f"cameras and IMUs that the file holds for a simulator are written: {shown}"
     context.report.note(codes.REWRITTEN, message, element=str(found[0]))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
+    return mechanism.replace(vertices=vertices, edges=edges)
 
 
 def held(mechanism: Mechanism) -> list[str]:

@@ -29,4 +29,4 @@ def give_colliders_friction(mechanism: Mechanism, context: Context) -> Mechanism
         return mechanism
     message = f"{counted(len(edges), 'shape')} without friction get {SLIDING:g}, MuJoCo's and Newton's default ({context.reason})"
     context.report.note(codes.FOR_TARGET, message, element=str(next(iter(edges))))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges))
+    return mechanism.replace(edges=edges)

@@ -67,7 +67,7 @@ def make_tensors_physical(mechanism: Mechanism, context: Context) -> Mechanism:
             inertial = replace(inertial, tensor=tensor, written=None)
         if inertial is not body.inertial:
             changed[key] = replace(body, inertial=inertial)
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)
 
 
 def give_moving_bodies_mass(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -87,7 +87,7 @@ def give_moving_bodies_mass(mechanism: Mechanism, context: Context) -> Mechanism
         hint = "--density 1000 computes masses from shapes (--inertia-from chooses which)" if body.inertial is None else ""
         words = f"moves and has {old}; mass {new.mass!r} and inertia {_words(new.tensor)} are written"
         _report(mechanism, context.report, key, words, hint=hint)
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)
 
 
 def give_every_body_mass(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -100,7 +100,7 @@ def give_every_body_mass(mechanism: Mechanism, context: Context) -> Mechanism:
         names = listed([f"'{key.name}'" for key in changed], 5)
         message = f"{len(changed)} links have no mass or no inertia; mass {LEAST!r} and inertia {LEAST!r} are written: {names}"
         context.report.note(codes.INERTIA_REPAIRED, message, element=str(next(iter(changed))))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)
 
 
 # ---- the tree --------------------------------------------------------------------------------------------------------------
@@ -292,7 +292,7 @@ def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
         context.report.note(codes.REWRITTEN, message, mechanism.origin(key), element=str(key))
     if unsaid:
         mechanism = replace(mechanism, notations={**mechanism.notations, **unsaid})
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)
 
 
 def evenly_spread(views: Iterable[ShapeView]) -> Inertial | None:

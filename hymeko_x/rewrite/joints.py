@@ -164,7 +164,7 @@ def split_overfull_joints(mechanism: Mechanism, context: Context) -> Mechanism:
             mechanism.origin(view.id),
             element=str(view.id),
         )
-    return _with_edges(mechanism.with_graph(mechanism.graph.replace(vertices=vertices)), edges, moved)
+    return _with_edges(mechanism.replace(vertices=vertices), edges, moved)
 
 
 # ---- parts of the rules ----------------------------------------------------------------------------------------------------
@@ -229,7 +229,7 @@ def _with_edges(mechanism: Mechanism, edges: Mapping[Id, RobotEdge], moved: Mapp
     if not edges:
         return mechanism
     followed = edges_to_moved_dofs(mechanism, moved) if moved else {}
-    return mechanism.with_graph(mechanism.graph.replace(edges={**followed, **edges}))
+    return mechanism.replace(edges={**followed, **edges})
 
 
 # ---- limits ------------------------------------------------------------------------------------------------------------
@@ -255,7 +255,7 @@ def make_limits_intervals(mechanism: Mechanism, context: Context) -> Mechanism:
             tell(codes.REWRITTEN, f"{view.id}: {words}", mechanism.origin(view.id), element=str(view.id))
         if dofs != view.joint.dofs:
             edges[view.id] = Edge(Joint(dofs), mechanism.graph.edges[view.id].arcs)
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+    return mechanism.replace(edges=edges)
 
 
 def legal_dof(dof: Dof, findings: Findings) -> Dof:

@@ -36,7 +36,7 @@ def open_second_parents(mechanism: Mechanism, context: Context) -> Mechanism:
         code = codes.REWRITTEN if closures else codes.NOT_SAID
         tell(code, f"{view.id} holds {view.child}, which has another parent; {words}", mechanism.origin(view.id), element=str(view.id))
         edges |= {names.take("loop", view.id.name): closure for closure in closures}
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=[view.id for view in extra]))
+    return mechanism.replace(edges=edges, without=[view.id for view in extra])
 
 
 def close_by_points(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -55,7 +55,7 @@ def close_by_points(mechanism: Mechanism, context: Context) -> Mechanism:
         for number, closure in enumerate(closures):
             edges[key if number == 0 else names.take("loop", key.name)] = closure
     gone = [key for key, _, _ in joints if key not in edges]
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=gone))
+    return mechanism.replace(edges=edges, without=gone)
 
 
 def anchor_closures(mechanism: Mechanism, _context: Context) -> Mechanism:
@@ -80,7 +80,7 @@ def anchor_closures(mechanism: Mechanism, _context: Context) -> Mechanism:
             edges[names.take("mount", frame.name)] = mount_edge(arc.target, frame, Pose(pose_weight(arc).xyz))
             anchored.append(Arc(frame))
         edges[key] = Edge(loop, tuple(anchored))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=frames, edges=edges))
+    return mechanism.replace(vertices=frames, edges=edges)
 
 
 def _is_anchored(arcs: tuple[RobotArc, ...]) -> bool:

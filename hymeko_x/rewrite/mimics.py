@@ -49,7 +49,7 @@ def put_leaders_first(mechanism: Mechanism, context: Context) -> Mechanism:
                 changed = edges[key].arcs
                 message = f"{changed[0].target} follows {changed[1].target}, which comes first in the tree ({context.reason})"
                 context.report.note(codes.FOR_TARGET, message, mechanism.origin(key), element=str(key))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+    return mechanism.replace(edges=edges)
 
 
 class _Mimic(NamedTuple):

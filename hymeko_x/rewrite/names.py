@@ -59,4 +59,4 @@ def name_assets_once(mechanism: Mechanism, context: Context) -> Mechanism:
             context.report.note(
                 codes.RENAMED, f"another {key.kind} is called '{wanted}' already; this one is written as '{name}'", mechanism.origin(key)
             )
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)

@@ -37,4 +37,4 @@ def name_poses(mechanism: Mechanism, context: Context) -> Mechanism:
         return mechanism
     listed = ", ".join(f"'{key.name}'" for key in vertices)
     context.report.note(codes.FOR_TARGET, f"keyframes are named poses ({context.reason}): {listed}")
-    return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
+    return mechanism.replace(vertices=vertices, edges=edges)

@@ -64,7 +64,7 @@ def with_world(mechanism: Mechanism) -> Mechanism:
     """The mechanism with a world."""
     if WORLD in mechanism.graph.vertices:
         return mechanism
-    return mechanism.with_graph(mechanism.graph.replace(vertices={WORLD: World()}))
+    return mechanism.replace(vertices={WORLD: World()})
 
 
 # ---- for formats without one -------------------------------------------------------------------------------------------
@@ -84,10 +84,10 @@ def make_world_a_link(mechanism: Mechanism, _context: Context) -> Mechanism:
     there, alone = WORLD in mechanism.graph.vertices, not any(True for _ in mechanism.vertices(Body))
     used = any(WORLD in [arc.target for arc in edge.arcs] for edge in mechanism.graph.edges.values())
     if not used and not (there and alone):
-        return mechanism.with_graph(mechanism.graph.replace(without=[WORLD])) if there else mechanism
+        return mechanism.replace(without=[WORLD])
     link = names_in_use(mechanism).take("body", WORLD.name)
     mechanism = rename(mechanism, {WORLD: link})
-    return mechanism.with_graph(mechanism.graph.replace(vertices={link: Body()}))
+    return mechanism.replace(vertices={link: Body()})
 
 
 def _without_held_worlds(mechanism: Mechanism) -> Mechanism:
@@ -97,7 +97,7 @@ def _without_held_worlds(mechanism: Mechanism) -> Mechanism:
         for joint in mechanism.children.get(WORLD, ())
         if not joint.joint.dofs and joint.parent_pose == joint.child_pose and stands_for_world(joint.child, mechanism)
     ]
-    return mechanism.with_graph(mechanism.graph.replace(without=idle)) if idle else mechanism
+    return mechanism.replace(without=idle)
 
 
 def open_floating_base(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -143,7 +143,7 @@ def without(mechanism: Mechanism, elements: list[Id]) -> Mechanism:
             edges[key] = replace(edge, arcs=left)
         else:
             elements = [*elements, key]
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=elements))
+    return mechanism.replace(edges=edges, without=elements)
 
 
 def join_roots(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -163,4 +163,4 @@ def join_roots(mechanism: Mechanism, context: Context) -> Mechanism:
         element=str(root),
     )
     vertices = {} if root in mechanism.graph.vertices else {root: Body()}
-    return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
+    return mechanism.replace(vertices=vertices, edges=edges)

@@ -47,7 +47,7 @@ def give_light_dofs_rotors(mechanism: Mechanism, context: Context) -> Mechanism:
     names = listed([f"'{key.name}'" for key in light], _SHOWN)
     message = f"armature is written for {counted(len(light), 'joint')}, moving less than {_LIGHT:g} kg m^2 or kg: {names}"
     context.report.note(codes.FOR_TARGET, f"{context.reason}: {message}", element=str(next(iter(light))))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges))
+    return mechanism.replace(edges=edges)
 
 
 def _has_unknown_masses(mechanism: Mechanism) -> bool:

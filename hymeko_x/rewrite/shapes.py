@@ -47,7 +47,7 @@ def drop_empty_shapes(mechanism: Mechanism, context: Context, has_own_geometry: 
         gone.append(view.id)
         reason = "has no mesh" if lost else "has no geometry that the target can represent"
         context.report.note(codes.NOT_SAID, f"{view.id} {reason}; it is left out", mechanism.origin(view.id), element=str(view.id))
-    return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
+    return mechanism.replace(without=gone)
 
 
 def drop_engine_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -59,14 +59,14 @@ def drop_engine_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
     for key in gone:
         message = f"{key} has a geometry that only {native.title} can represent; it is left out"
         context.report.warn(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
-    return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
+    return mechanism.replace(without=gone)
 
 
 def drop_unused_assets(mechanism: Mechanism, _context: Context) -> Mechanism:
     """Meshes of no shape and images of no material have no place in the target; the ledger names them."""
     used = {arc.target for edge in mechanism.graph.edges.values() for arc in edge.arcs}
     gone = [key for key, _ in mechanism.assets() if key not in used]
-    return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
+    return mechanism.replace(without=gone)
 
 
 def make_sizes_positive(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -83,7 +83,7 @@ def make_sizes_positive(mechanism: Mechanism, context: Context) -> Mechanism:
             mechanism.origin(key),
             element=str(key),
         )
-    return mechanism.with_graph(mechanism.graph.replace(edges=changed)) if changed else mechanism
+    return mechanism.replace(edges=changed)
 
 
 def keep_planes_static(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -107,7 +107,7 @@ def keep_planes_static(mechanism: Mechanism, context: Context) -> Mechanism:
         context.report.note(
             codes.REWRITTEN, f"{key} is a plane on a body that moves; it is written as a thin box", mechanism.origin(key), element=str(key)
         )
-    return mechanism.with_graph(mechanism.graph.replace(edges=changed, without=gone)) if changed or gone else mechanism
+    return mechanism.replace(edges=changed, without=gone)
 
 
 def name_shapes_once(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -128,7 +128,7 @@ def name_shapes_once(mechanism: Mechanism, context: Context) -> Mechanism:
                 mechanism.origin(key),
                 element=str(key),
             )
-    return mechanism.with_graph(mechanism.graph.replace(edges=changed)) if changed else mechanism
+    return mechanism.replace(edges=changed)
 
 
 # ---- parts of the rules ----------------------------------------------------------------------------------------------------
@@ -203,7 +203,7 @@ def split_shared_shapes(mechanism: Mechanism, _context: Context) -> Mechanism:
     for view in shared:
         for key, role in ((view.id, Role.VISUAL), (names.take("shape", f"{view.body.name}/collision"), Role.COLLISION)):
             edges[key] = Edge(_shape_as(view.shape, view.shape.geometry, role), mechanism.graph.edges[view.id].arcs)
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges))
+    return mechanism.replace(edges=edges)
 
 
 def prefer_own_colours(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -215,7 +215,7 @@ def prefer_own_colours(mechanism: Mechanism, context: Context) -> Mechanism:
         edges[view.id] = shape_edge(view.shape, view.body, view.pose, view.mesh)
         message = f"{view.id} has a colour of its own and {view.material}; only its colour is written"
         context.report.note(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+    return mechanism.replace(edges=edges)
 
 
 def approximate_shapes(mechanism: Mechanism, context: Context, kinds: tuple[type, ...]) -> Mechanism:
@@ -237,7 +237,7 @@ def approximate_shapes(mechanism: Mechanism, context: Context, kinds: tuple[type
         article = "an" if kind[0] in "aeiou" else "a"
         message = f"{view.id} is {article} {kind}, which the format cannot represent; it is written as {_INSTEAD[kind]}"
         context.report.note(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=meshes, edges=edges))
+    return mechanism.replace(vertices=meshes, edges=edges)
 
 
 _INSTEAD = {"capsule": "a cylinder and two spheres", "plane": "a thin box", "ellipsoid": "a mesh"}

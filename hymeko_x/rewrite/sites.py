@@ -43,7 +43,7 @@ def make_frames_links(mechanism: Mechanism, report: Report, reason: str) -> Mech
     shown = listed([f"'{view.thing.name}'" for view in chosen], _SHOWN)
     message = f"{counted(len(chosen), 'site')} written as links with fixed joints ({reason}): {shown}"
     report.note(codes.FOR_TARGET, message, element=str(chosen[0].thing))
-    return replace(mechanism.with_graph(mechanism.graph.replace(vertices=bodies, edges=edges)), origins=origins)
+    return replace(mechanism.replace(vertices=bodies, edges=edges), origins=origins)
 
 
 def _needs_link(view: MountView, mechanism: Mechanism) -> bool:

@@ -46,7 +46,7 @@ def split_subsets(mechanism: Mechanism, context: Context) -> Mechanism:
         gone += [] if users[view.mesh] else [view.mesh]
         message = f"{key} shows {len(pieces)} materials; a visual of its own is written for each"
         context.report.note(codes.REWRITTEN, message, mechanism.origin(key), element=str(key))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=split.meshes, edges=split.edges, without=gone))
+    return mechanism.replace(vertices=split.meshes, edges=split.edges, without=gone)
 
 
 _Piece = tuple["Id | None", tuple[int, ...]]
@@ -150,4 +150,4 @@ def part_meshes_by_looks(mechanism: Mechanism, _context: Context) -> Mechanism:
         if known[own] != view.mesh:
             meshes[known[own]] = mesh
             edges[view.id] = shape_edge(view.shape, view.body, view.pose, known[own], view.material)
-    return mechanism.with_graph(mechanism.graph.replace(vertices=meshes, edges=edges)) if edges else mechanism
+    return mechanism.replace(vertices=meshes, edges=edges) if edges else mechanism

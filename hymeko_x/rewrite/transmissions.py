@@ -75,7 +75,7 @@ def drive_by_transmissions(mechanism: Mechanism, context: Context) -> Mechanism:
     names = listed([f"'{command.end.target.name}' {command.kind}" for command in commands], _SHOWN)
     message = f"{counted(len(commands), 'transmission')} written as the actuators that the hardware interfaces name: {names}"
     context.report.note(codes.REWRITTEN, message, element=str(commands[0].actuator))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
+    return mechanism.replace(vertices=vertices, edges=edges)
 
 
 def commanded(mechanism: Mechanism) -> list[Id]:

@@ -86,7 +86,7 @@ def with_files(host: Mechanism, part: Mechanism, of_host: Files, of_part: Files)
     for key, uri, asset in _relative_assets(part):
         new = posixpath.normpath(f"{way}/{uri}")
         moved[key], uris[new] = replace(asset, uri=new), uri
-    return part.with_graph(part.graph.replace(vertices=moved)), ManyFiles((of_host, PartFiles(uris, of_part)))
+    return part.replace(vertices=moved), ManyFiles((of_host, PartFiles(uris, of_part)))
 
 
 def _relative_assets(mechanism: Mechanism) -> Iterator[tuple[Id, str, Mesh | Texture]]:

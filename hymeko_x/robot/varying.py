@@ -50,4 +50,4 @@ def vary(mechanism: Mechanism, seed: int, spreads: Mapping[str, float]) -> Mecha
         elif isinstance(edge.data, Shape) and spreads.get("contact_friction") and edge.data.friction:
             sliding, *rest = edge.data.friction
             edges[key] = replace(edge, data=replace(edge.data, friction=(sliding * factor(key, "contact_friction"), *rest)))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
+    return mechanism.replace(vertices=vertices, edges=edges)

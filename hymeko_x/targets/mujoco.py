@@ -89,7 +89,7 @@ def exclude_what_touches_at_home(mechanism: Mechanism, context: Context) -> Mech
     named = listed([f"'{a.name}' and '{b.name}'" for a, b in found], _SHOWN)
     message = f"{counted(len(found), 'pair')} of bodies touching at home excluded from collision: {named}"
     context.report.note(codes.FOR_TARGET, f"{context.reason}: {message}", element=str(found[0][0]))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges))
+    return mechanism.replace(edges=edges)
 
 
 RULES: tuple[Rule, ...] = (integrate_implicitly, give_light_dofs_rotors, name_home, exclude_what_touches_at_home)

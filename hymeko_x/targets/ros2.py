@@ -43,7 +43,7 @@ def let_base_float_in_srdf(mechanism: Mechanism, context: Context) -> Mechanism:
     context.report.note(codes.FOR_TARGET, message, mechanism.origin(held.id), element=str(held.id))
     notations = {**mechanism.notations, held.id: {**mechanism.notations.get(held.id, {}), VIRTUAL.name: VIRTUAL.write(True)}}
     edges = {held.id: joint_edge(held.joint, WORLD, held.child)}
-    return replace(mechanism.with_graph(mechanism.graph.replace(edges=edges)), notations=notations)
+    return replace(mechanism.replace(edges=edges), notations=notations)
 
 
 # ---- SRDF ----------------------------------------------------------------------------------------------------------------------
@@ -56,7 +56,7 @@ def give_reasons(mechanism: Mechanism, _context: Context) -> Mechanism:
         if contact.kind == "exclude" and len(arcs) == 2 and srdf.REASON not in dict(contact.parameters):
             reason = srdf.ADJACENT if _are_adjacent(arcs[0].target, arcs[1].target, mechanism) else srdf.USER
             edges[key] = replace(mechanism.graph.edges[key], data=replace(contact, parameters=((srdf.REASON, reason),)))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+    return mechanism.replace(edges=edges)
 
 
 def _are_adjacent(a: Id, b: Id, mechanism: Mechanism) -> bool:
@@ -78,7 +78,7 @@ def exclude_neighbours(mechanism: Mechanism, context: Context) -> Mechanism:
     for body in {body for pair in pairs for body in pair} & notations.keys():  # what is referred to has its name written
         notations[body] = {name: text for name, text in notations[body].items() if name != UNNAMED.name}
     mechanism = replace(mechanism, notations=notations)
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges))
+    return mechanism.replace(edges=edges)
 
 
 def _neighbours(mechanism: Mechanism) -> Iterator[tuple[Id, Id]]:
@@ -114,7 +114,7 @@ def declare_groups(mechanism: Mechanism, context: Context) -> Mechanism:
     extras = tuple(Extra(words.FORMAT, srdf.PATH, "".join(line.strip() for line in render(tag))) for tag in tags)
     context.report.note(codes.FOR_TARGET, f"the SRDF has the group '{srdf.ALL}' of {counted(len(group), 'joint')} ({context.reason})")
     poses = {key: replace(pose, group=pose.group or srdf.ALL) for key, pose in mechanism.vertices(PoseSet)}
-    mechanism = mechanism.with_graph(mechanism.graph.replace(vertices=poses)) if poses else mechanism
+    mechanism = mechanism.replace(vertices=poses)
     return replace(mechanism, extras={**mechanism.extras, ROOT: (*own, *extras)})
 
 

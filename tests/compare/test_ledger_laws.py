@@ -121,7 +121,7 @@ def _on_a_dof(**changed: object) -> Callable[[Mechanism], tuple[Mechanism, Id] |
             if view.joint.dofs and view.joint.dofs[0].kind is not parts.DofKind.FREE:
                 edge = robot.graph.edges[key]
                 joint = parts.Joint((replace(view.joint.dofs[0], **changed),))  # type: ignore[arg-type]
-                return robot.with_graph(robot.graph.replace(edges={key: replace(edge, data=joint)})), key
+                return robot.replace(edges={key: replace(edge, data=joint)}), key
         return None
 
     return change
@@ -134,7 +134,7 @@ def _on_a_free_joint(axis: Vec3) -> Callable[[Mechanism], tuple[Mechanism, Id] |
         for key, view in robot.joints.items():
             if view.joint.dofs and view.joint.dofs[0].kind is parts.DofKind.FREE:
                 edge = replace(robot.graph.edges[key], data=parts.Joint((parts.Dof(parts.DofKind.FREE, axis),)))
-                return robot.with_graph(robot.graph.replace(edges={key: edge})), key
+                return robot.replace(edges={key: edge}), key
         return None
 
     return change
@@ -148,7 +148,7 @@ def _on_a_shape(**changed: object) -> Callable[[Mechanism], tuple[Mechanism, Id]
             for view in views:
                 if view.shape.role is parts.Role.COLLISION:
                     edge = replace(robot.graph.edges[view.id], data=replace(view.shape, **changed))  # type: ignore[arg-type]
-                    return robot.with_graph(robot.graph.replace(edges={view.id: edge})), view.id
+                    return robot.replace(edges={view.id: edge}), view.id
         return None
 
     return change
@@ -193,12 +193,12 @@ def _in_other_frames(robot: Mechanism) -> tuple[Mechanism, Id] | None:
             frame = Pose(scaled(dof.axis, 0.5) if dof.kind is parts.DofKind.HINGE else (0.5, 1.0, -0.25), (0.5, 0.5, 0.5, 0.5))
             turned = parts.Joint((replace(dof, axis=rotate(inverse(frame).quat, dof.axis)),))
             above, below = (compose(each, frame) for each in (view.parent_pose, view.child_pose))
-            return robot.with_graph(robot.graph.replace(edges={key: joint_edge(turned, view.parent, view.child, above, below)})), key
+            return robot.replace(edges={key: joint_edge(turned, view.parent, view.child, above, below)}), key
     return None
 
 
 def _with_a_bare_world(robot: Mechanism) -> tuple[Mechanism, Id]:
-    return robot.with_graph(robot.graph.replace(vertices={WORLD: parts.World()})), WORLD
+    return robot.replace(vertices={WORLD: parts.World()}), WORLD
 
 
 NO_LOSS = {

@@ -177,5 +177,5 @@ def test_an_id_is_shown_with_its_kind() -> None:
 def test_another_graph_changes_nothing_else() -> None:
     named = {name: object() for name in Mechanism.__struct_fields__ if name != "graph"}
     full = replace(Mechanism("r"), **named)  # type: ignore[arg-type]
-    changed = full.with_graph(full.graph.replace(vertices={Id("body", "b"): parts.Body()}))
+    changed = full.replace(vertices={Id("body", "b"): parts.Body()})
     assert {name: getattr(changed, name) for name in named} == named

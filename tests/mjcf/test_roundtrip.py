@@ -196,5 +196,5 @@ def test_a_tensor_whose_author_wrote_products_in_axes_of_their_own_is_written_wh
     robot, key = read_text(text), Id("body", "b")
     frame, tensor = pose(quat=quat_about(Z, 0.5)), (1.0, 1.25, 1.5, 0.125, 0.0, 0.0)
     inertial = Inertial(1.0, (0.0, 0.0, 0.0), rotate_tensor(frame.quat, tensor), InertialWritten(frame, tensor))
-    edited = robot.with_graph(robot.graph.replace(vertices={key: Body(inertial)}))
+    edited = robot.replace(vertices={key: Body(inertial)})
     assert read_text(write(edited)).vertex(key, Body).inertial == inertial

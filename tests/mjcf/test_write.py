@@ -178,7 +178,7 @@ def motion(dof: Dof, coordinate: float) -> Pose:
 def test_bodies_move_as_the_formula_of_the_ir_says(above: Pose, below: Pose, dofs: list[Dof], q: list[float]) -> None:
     mechanism = chain(Joint(tuple(dofs)))
     edges = {joint("j1"): joint_edge(Joint(tuple(dofs)), body("b0"), body("b1"), above, below)}
-    model = compiled(mechanism.with_graph(mechanism.graph.replace(edges=edges)))
+    model = compiled(mechanism.replace(edges=edges))
     data = mujoco.MjData(model)
     data.qpos[:] = q[: len(dofs)]
     mujoco.mj_kinematics(model, data)
@@ -373,7 +373,7 @@ def test_a_weld_of_turned_frames_holds_where_they_coincide() -> None:
         joint("j1"): joint_edge(Joint((Dof(DofKind.BALL),)), body("b0"), body("b1"), compose(one, inverse(two))),
         Id("loop", "w"): Edge(Loop("weld"), (Arc(body("b0"), 0, one), Arc(body("b1"), 0, two))),
     }
-    model = compiled(mechanism.with_graph(mechanism.graph.replace(edges=meeting)))
+    model = compiled(mechanism.replace(edges=meeting))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     assert np.abs(data.efc_pos[:6]).max() < 1e-12

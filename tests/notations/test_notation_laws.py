@@ -118,6 +118,6 @@ def _plainly_named(robot: Mechanism) -> Mechanism:
     """The robot with names that are paths of prims, and without a follower that turns, of which the writer knows no unit."""
     turning = {key for key, view in robot.joints.items() for dof in view.joint.dofs if dof.kind is parts.DofKind.HINGE}
     mixed = [key for key, _, arcs in robot.edges(parts.Coupling) if turning & {arc.target for arc in arcs}]
-    robot = robot.with_graph(robot.graph.replace(without=mixed))
+    robot = robot.replace(without=mixed)
     named = [*(key for key, _ in robot.vertices(parts.Body)), *robot.joints]
     return rename(robot, {key: Id(key.kind, f"{key.kind}_{number}") for number, key in enumerate(named)})

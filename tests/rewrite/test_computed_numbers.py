@@ -22,9 +22,9 @@ AUTHORED = 0.12345678901234567
 
 def test_numbers_of_changed_elements_are_short_and_those_of_the_source_stay() -> None:
     source = chain(hinge())
-    given = source.with_graph(source.graph.replace(vertices={body("b0"): Body(Inertial(AUTHORED, (0.0, 0.0, 0.1)))}))
+    given = source.replace(vertices={body("b0"): Body(Inertial(AUTHORED, (0.0, 0.0, 0.1)))})
     computed = Inertial(AUTHORED, (2.2e-17, 0.1 + 0.2, AUTHORED), (0.02, 0.03, 0.04, -4.9e-20, 0.0, 0.0))
-    rewritten = given.with_graph(given.graph.replace(vertices={body("b0"): Body(computed)}))
+    rewritten = given.replace(vertices={body("b0"): Body(computed)})
     assert shorten_computed(rewritten, given).vertex(body("b0"), Body) == Body(
         Inertial(AUTHORED, (0.0, 0.3, AUTHORED), (0.02, 0.03, 0.04, 0.0, 0.0, 0.0))
     )
@@ -32,7 +32,7 @@ def test_numbers_of_changed_elements_are_short_and_those_of_the_source_stay() ->
 
 def test_a_mechanism_without_computed_numbers_is_the_same_object() -> None:
     source = chain(hinge())
-    other = source.with_graph(source.graph.replace(vertices={body("b0"): Body()}))
+    other = source.replace(vertices={body("b0"): Body()})
     assert shorten_computed(source, source) is source
     assert shorten_computed(other, source) is other
 
@@ -40,8 +40,8 @@ def test_a_mechanism_without_computed_numbers_is_the_same_object() -> None:
 def test_a_version_with_many_dots_is_no_number() -> None:
     firmware = Sensor("imu", parameters=(("firmware", "1.2.3.4.5.6.7.8.9.10"),))
     source = chain(hinge())
-    given = source.with_graph(source.graph.replace(vertices={Id("sensor", "imu"): firmware}))
-    rewritten = given.with_graph(given.graph.replace(vertices={body("b0"): Body(Inertial(0.1 + 0.2))}))
+    given = source.replace(vertices={Id("sensor", "imu"): firmware})
+    rewritten = given.replace(vertices={body("b0"): Body(Inertial(0.1 + 0.2))})
     assert shorten_computed(rewritten, given).vertex(body("b0"), Body) == Body(Inertial(0.3))
 
 
@@ -49,8 +49,8 @@ def test_ten_times_as_many_computed_numbers_take_ten_times_as_long() -> None:
     def shortening(count: int) -> Callable[[], object]:
         numbers = [0.1 + number / 3 for number in range(count)]
         source = chain(hinge())
-        given = source.with_graph(source.graph.replace(vertices={body(f"g{i}"): Body(Inertial(x)) for i, x in enumerate(numbers)}))
-        computed = given.with_graph(given.graph.replace(vertices={body(f"g{i}"): Body(Inertial(x + 1)) for i, x in enumerate(numbers)}))
+        given = source.replace(vertices={body(f"g{i}"): Body(Inertial(x)) for i, x in enumerate(numbers)})
+        computed = given.replace(vertices={body(f"g{i}"): Body(Inertial(x + 1)) for i, x in enumerate(numbers)})
         return lambda: shorten_computed(computed, given)
 
     assert_at_most(2.0, shortening(10_000), shortening(1_000), count=10)
@@ -59,9 +59,7 @@ def test_ten_times_as_many_computed_numbers_take_ten_times_as_long() -> None:
 def test_poses_of_new_elements_are_clean() -> None:
     source = chain(hinge())
     pose = Pose((0.30000000000000004, 1e-17, 0.0), (math.sqrt(0.5), 0.0, 4.3e-17, math.sqrt(0.5)))
-    new = source.with_graph(
-        source.graph.replace(edges={Id("shape", "new"): shape_edge(Shape(Box((0.1, 0.1, 0.1)), Role.VISUAL), body("b0"), pose)})
-    )
+    new = source.replace(edges={Id("shape", "new"): shape_edge(Shape(Box((0.1, 0.1, 0.1)), Role.VISUAL), body("b0"), pose)})
     view = shorten_computed(new, source).shapes[body("b0")][0]
     assert view.pose == Pose((0.3, 0.0, 0.0), (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)))
 

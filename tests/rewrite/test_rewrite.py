@@ -114,7 +114,7 @@ def with_world_link(inertial: Inertial | None) -> Mechanism:
     mechanism = chain(hinge(axis=Z))
     link = {body("world"): Body(inertial)}
     fixed = {joint("stand"): joint_edge(Joint(), body("world"), body("b0"))}
-    return mechanism.with_graph(mechanism.graph.replace(vertices=link, edges=fixed))
+    return mechanism.replace(vertices=link, edges=fixed)
 
 
 def test_a_root_link_called_world_is_the_world() -> None:
@@ -136,7 +136,7 @@ def test_a_root_link_called_world_with_a_mass_is_renamed() -> None:
 def test_a_link_called_world_inside_the_tree_is_renamed() -> None:
     mechanism = chain(hinge(axis=Z))
     child = {joint("j2"): joint_edge(Joint(), body("b1"), body("world"))}
-    result, said = legal(mechanism.with_graph(mechanism.graph.replace(vertices={body("world"): Body()}, edges=child)))
+    result, said = legal(mechanism.replace(vertices={body("world"): Body()}, edges=child))
     assert result.joints[joint("j2")].child == body("world_link")
     assert [line.split(",")[0] for line in said] == ["warning HX102 link 'world' is not the root"]
 
@@ -226,7 +226,7 @@ def diamond(*closing: Dof) -> Mechanism:
     """Two branches from b0 that meet in b2."""
     mechanism = chain(hinge(axis=Z), hinge(axis=Z))
     second = {joint("again"): joint_edge(Joint(closing), body("b0"), body("b2"), pose((0.0, 1.0, 0.0)))}
-    return mechanism.with_graph(mechanism.graph.replace(edges=second))
+    return mechanism.replace(edges=second)
 
 
 def test_a_fixed_second_parent_becomes_a_weld() -> None:
@@ -253,7 +253,7 @@ def test_a_second_slide_is_left_out_and_that_is_a_warning() -> None:
 def test_bodies_in_a_ring_without_a_root_are_opened_once() -> None:
     mechanism = chain(hinge(axis=Z))
     ring = {joint("back"): joint_edge(Joint(), body("b1"), body("b0"))}
-    result, _ = legal(mechanism.with_graph(mechanism.graph.replace(edges=ring)))
+    result, _ = legal(mechanism.replace(edges=ring))
     assert list(result.depth_first()) == [body("b0"), body("b1")]
     assert [loop.kind for _, loop, _ in result.edges(Loop)] == ["weld"]
 
@@ -330,13 +330,13 @@ def test_a_moving_body_without_mass_gets_the_least_one() -> None:
 
 def test_a_moving_body_with_a_mass_fixed_to_it_needs_none_of_its_own() -> None:
     mechanism = chain(hinge(axis=Z), Joint(), Joint(), inertial=None)
-    heavy = mechanism.with_graph(mechanism.graph.replace(vertices={body("b3"): Body(SOLID)}))
+    heavy = mechanism.replace(vertices={body("b3"): Body(SOLID)})
     assert legal(heavy) == (heavy, [])
 
 
 def test_a_mass_behind_another_moving_joint_does_not_count() -> None:
     mechanism = chain(hinge(axis=Z), hinge(axis=Z), inertial=None)
-    heavy = mechanism.with_graph(mechanism.graph.replace(vertices={body("b2"): Body(SOLID)}))
+    heavy = mechanism.replace(vertices={body("b2"): Body(SOLID)})
     result, _ = legal(heavy)
     assert inertial_of(result, "b1") == Inertial(LEAST, tensor=(LEAST, LEAST, LEAST, 0.0, 0.0, 0.0))
 

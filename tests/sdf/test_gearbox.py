@@ -64,7 +64,7 @@ def test_another_ratio_is_written_in_its_place_and_another_relation_as_a_mimic()
 
     def with_coefficients(*numbers: float) -> str:
         arcs = edge.arcs[0], Arc(edge.arcs[1].target, -1, numbers)
-        return hx.dumps(robot.with_graph(robot.graph.replace(edges={key: Edge(edge.data, arcs)})), "sdf")
+        return hx.dumps(robot.replace(edges={key: Edge(edge.data, arcs)}), "sdf")
 
     assert "<gearbox_ratio>0.5</gearbox_ratio>" in with_coefficients(0.0, 0.5)
     assert "gearbox" not in with_coefficients(1.0, 0.5)

@@ -128,8 +128,8 @@ def test_what_hangs_on_a_dof_follows_it() -> None:
     coupling = coupling_edge(Id("joint", "k"), ((J, (0.0, 2.0)),))
     leader = coupling.arcs[1]
     coupling = type(coupling)(coupling.data, (coupling.arcs[0], type(leader)(leader.target, leader.sign, leader.weight, "h")))
-    graph = mechanism.graph.replace(vertices={C: Body()}, edges={Id("joint", "k"): follower, Id("coupling", "k"): coupling})
-    assert '<mimic joint="h" multiplier="2" offset="0"/>' in dump(legal(mechanism.with_graph(graph)))
+    moved = mechanism.replace(vertices={C: Body()}, edges={Id("joint", "k"): follower, Id("coupling", "k"): coupling})
+    assert '<mimic joint="h" multiplier="2" offset="0"/>' in dump(legal(moved))
 
 
 def test_the_world_becomes_a_link_without_mass() -> None:

@@ -61,7 +61,7 @@ def _below(robot: Mechanism, body: Id) -> tuple[str, ...]:
 
 
 def _with(robot: Mechanism, key: Id, edge: RobotEdge) -> Mechanism:
-    return robot.with_graph(robot.graph.replace(edges={key: edge}))
+    return robot.replace(edges={key: edge})
 
 
 def _placed(robot: Mechanism, view: JointView, pose: Pose) -> Mechanism:
@@ -179,8 +179,8 @@ def _coupling(change: Callable[[st.DrawFn, float, float], tuple[float, float]]) 
 
 def follows_nothing(draw: st.DrawFn, robot: Mechanism) -> Change | None:
     for key, _, arcs in robot.edges(parts.Coupling):
-        graph = robot.graph.replace(without=[key])
-        return Change(robot.with_graph(graph), "couplings", (f"joint '{arcs[0].target.name}'",))
+        changed = robot.replace(without=[key])
+        return Change(changed, "couplings", (f"joint '{arcs[0].target.name}'",))
     return None
 
 
@@ -191,8 +191,8 @@ def _inertial(quantity: str, change: Callable[[st.DrawFn, parts.Inertial], parts
     def plant(draw: st.DrawFn, robot: Mechanism) -> Change | None:
         key, body = draw(st.sampled_from(list(robot.vertices(parts.Body))))
         assert body.inertial is not None
-        graph = robot.graph.replace(vertices={key: parts.Body(change(draw, body.inertial))})
-        return Change(robot.with_graph(graph), quantity, (f"body '{key.name}'",))
+        changed = robot.replace(vertices={key: parts.Body(change(draw, body.inertial))})
+        return Change(changed, quantity, (f"body '{key.name}'",))
 
     return plant
 
@@ -239,8 +239,8 @@ def without_a_shape(draw: st.DrawFn, robot: Mechanism) -> Change | None:
     if not found:
         return None
     body, view = draw(st.sampled_from(found))
-    graph = robot.graph.replace(without=[view.id])
-    return Change(robot.with_graph(graph), f"{view.shape.role.value} shapes", (f"body '{body.name}'",))
+    changed = robot.replace(without=[view.id])
+    return Change(changed, f"{view.shape.role.value} shapes", (f"body '{body.name}'",))
 
 
 def _resized(draw: st.DrawFn, view: ShapeView) -> RobotEdge:
@@ -297,15 +297,15 @@ def without_a_body(draw: st.DrawFn, robot: Mechanism) -> Change | None:
     if view is None:
         return None
     gone = [view.id, view.child, *(shape.id for shape in robot.shapes.get(view.child, ()))]
-    return Change(robot.with_graph(robot.graph.replace(without=gone)), "bodies", (f"body '{view.child.name}'",))
+    return Change(robot.replace(without=gone), "bodies", (f"body '{view.child.name}'",))
 
 
 def another_body(draw: st.DrawFn, robot: Mechanism) -> Change:
     above, body = draw(st.sampled_from(list(robot.vertices(parts.Body))))
-    graph = robot.graph.replace(
+    changed = robot.replace(
         vertices={Id("body", "another"): body}, edges={Id("joint", "to another"): joint_edge(parts.Joint(), above, Id("body", "another"))}
     )
-    return Change(robot.with_graph(graph), "bodies", ("body 'another'",))
+    return Change(changed, "bodies", ("body 'another'",))
 
 
 PLANTERS: dict[str, Planter] = {

@@ -39,7 +39,7 @@ def cabled(draw: st.DrawFn) -> Mechanism:
     edges[CABLE] = Edge(draw(_tendons("spatial", armature=0.0)), path)
     moving = [view.id for view in robot.joints.values() if view.joint.dofs]
     edges[SUM] = Edge(draw(_tendons("fixed", armature=draw(_NUMBERS))), tuple(Arc(joint, 1, (draw(_NUMBERS),)) for joint in moving))
-    return robot.with_graph(robot.graph.replace(vertices=dict.fromkeys(SITES, parts.Frame()), edges=edges))
+    return robot.replace(vertices=dict.fromkeys(SITES, parts.Frame()), edges=edges)
 
 
 @st.composite
@@ -56,7 +56,7 @@ def _tendons(draw: st.DrawFn, kind: str, *, armature: float) -> parts.Tendon:
 
 
 def _with(robot: Mechanism, key: Id, tendon: parts.Tendon, arcs: tuple[RobotArc, ...]) -> Mechanism:
-    return robot.with_graph(robot.graph.replace(edges={key: Edge(tendon, arcs)}))
+    return robot.replace(edges={key: Edge(tendon, arcs)})
 
 
 def _of(robot: Mechanism, key: Id) -> tuple[parts.Tendon, tuple[RobotArc, ...]]:
@@ -133,14 +133,14 @@ def _site_moved(draw: st.DrawFn, robot: Mechanism) -> Change:
     body, at = _mounted(robot, site)
     x, y, z = (draw(_BY) * part for part in draw(st.sampled_from([X, Y, Z])))
     edge = mount_edge(body, site, replace(at, xyz=add(at.xyz, (x, y, z))))
-    return _change("path", CABLE, robot.with_graph(robot.graph.replace(edges={Id("mount", site.name): edge})))
+    return _change("path", CABLE, robot.replace(edges={Id("mount", site.name): edge}))
 
 
 def _site_on_another_body(draw: st.DrawFn, robot: Mechanism) -> Change:
     site = draw(st.sampled_from(SITES))
     body, at = _mounted(robot, site)
     other = draw(st.sampled_from([other for other in (WORLD, *robot.parent_joint) if other != body]))
-    return _change("", CABLE, robot.with_graph(robot.graph.replace(edges={Id("mount", site.name): mount_edge(other, site, at)})))
+    return _change("", CABLE, robot.replace(edges={Id("mount", site.name): mount_edge(other, site, at)}))
 
 
 def _mounted(robot: Mechanism, site: Id) -> tuple[Id, Pose]:
@@ -180,7 +180,7 @@ def _drum(robot: Mechanism) -> tuple[parts.Shape, RobotArc]:
 
 def _with_drum(robot: Mechanism, shape: parts.Shape, arc: RobotArc) -> Mechanism:
     at = arc.weight if isinstance(arc.weight, Pose) else Pose()
-    return robot.with_graph(robot.graph.replace(edges={DRUM: shape_edge(shape, arc.target, at)}))
+    return robot.replace(edges={DRUM: shape_edge(shape, arc.target, at)})
 
 
 def _another_order(draw: st.DrawFn, robot: Mechanism) -> Change | None:
@@ -211,7 +211,7 @@ def _joint_left_out(draw: st.DrawFn, robot: Mechanism) -> Change | None:
 
 def _gone(draw: st.DrawFn, robot: Mechanism) -> Change:
     key = draw(st.sampled_from([SUM, CABLE]))
-    return _change("", key, robot.with_graph(robot.graph.replace(without=[key])))
+    return _change("", key, robot.replace(without=[key]))
 
 
 def _renamed(draw: st.DrawFn, robot: Mechanism) -> Change:

@@ -242,7 +242,7 @@ def test_convert_ends_with_4_when_the_result_is_another_robot(
 
     def forget(mechanism: hx.Mechanism, context: object) -> hx.Mechanism:
         gone = [key for key in mechanism.graph.edges if key.kind == "coupling"]
-        return mechanism.with_graph(mechanism.graph.replace(without=gone))
+        return mechanism.replace(without=gone)
 
     monkeypatch.setattr(rules_mjcf, "RULES", (*rules_mjcf.RULES, forget))
     assert main(["convert", arm, str(tmp_path / "out.xml"), "--verify", "--samples", "5"]) == exits.DIFFERENT

@@ -35,7 +35,7 @@ def name_meshes(mechanism: Mechanism, source: Mechanism) -> Mechanism:
         name = name or free_name(stem, taken.__contains__, "_")
         taken.add(name)
         changed[key] = replace(mesh, name=name)
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)
 
 
 def _wanted(stem: str, users: list[ShapeView]) -> Iterator[str]:

@@ -73,7 +73,7 @@ def with_points_as_files(mechanism: Mechanism, shelf: Shelf) -> Mechanism:
         if not stays_inline(part):
             suffix, data = mesh_file(part)
             changed[key] = without_points(replace(mesh, uri=shelf.place(FOLDER, key.name, suffix, data)))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    return mechanism.replace(vertices=changed)
 
 
 def without_points(mesh: Mesh) -> Mesh:

@@ -81,7 +81,7 @@ def _with_mended_files(mechanism: Mechanism, packed: Mechanism, shelf: Shelf, fi
             uri = _mended(part.uri, new.uri, key, mechanism, shelf, files, report)
             if uri != new.uri:
                 changed[key] = replace(new, uri=uri)
-    return packed.with_graph(packed.graph.replace(vertices=changed)) if changed else packed
+    return packed.replace(vertices=changed)
 
 
 def _mended(uri: str, there: str, key: Id, mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> str:

@@ -60,7 +60,7 @@ def move_anchors_into_frames(mechanism: Mechanism, _context: Context) -> Mechani
         parent = compose(compose(view.parent_pose, at), _moved_by(dof, -dof.ref))
         single = replace(dof, anchor=ZERO, ref=0.0)
         edges[key] = joint_edge(Joint((single,)), view.parent, view.child, parent, compose(view.child_pose, at))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+    return mechanism.replace(edges=edges)
 
 
 def _moved_by(dof: Dof, coordinate: float) -> Pose:
@@ -99,7 +99,7 @@ def remove_crossed_limits(mechanism: Mechanism, context: Context) -> Mechanism:
         edges[view.id] = replace(mechanism.graph.edges[view.id], data=replace(view.joint, dofs=dofs))
         message = f"{view.id}: the lower limit is above the upper one, which SDF refuses; it is written without position limits"
         context.report.warn(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+    return mechanism.replace(edges=edges)
 
 
 def _uncrossed(dof: Dof) -> Dof:
@@ -165,7 +165,7 @@ def put_world_geometry_on_a_link(mechanism: Mechanism, context: Context) -> Mech
     context.report.note(codes.REWRITTEN, message, element=str(link))
     edges = {key: _on(edge, link) for key, edge in moved.items()}
     edges[names.take("joint", f"{link.name}_to_world")] = joint_edge(Joint(), WORLD, link)
-    return mechanism.with_graph(mechanism.graph.replace(vertices={link: Body()}, edges=edges))
+    return mechanism.replace(vertices={link: Body()}, edges=edges)
 
 
 def _on(edge: RobotEdge, link: Id) -> RobotEdge:

@@ -158,7 +158,7 @@ def _with_textures(mechanism: Mechanism, shelf: Shelf, files: Files, report: Rep
     if not textures:
         return mechanism
     meshes = [key for key, _ in mechanism.vertices(Mesh)]
-    bare = mechanism.with_graph(mechanism.graph.replace(without=meshes))
+    bare = mechanism.replace(without=meshes)
     moved = keep_references(bare, shelf, files, report, Keep.NOTHING)
     new = {key: moved.graph.vertices[key] for key in textures}
-    return mechanism.with_graph(mechanism.graph.replace(vertices=new))
+    return mechanism.replace(vertices=new)

@@ -30,7 +30,7 @@ def drop_loops_without_bodies(mechanism: Mechanism, context: Context) -> Mechani
     gone = [key for key, _, arcs in mechanism.edges(Loop) if all(frames.get(arc.target, arc.target) == WORLD for arc in arcs)]
     for key in gone:
         context.report.warn(codes.NOT_SAID, f"{key} is left out: it joins no body", mechanism.origin(key), element=str(key))
-    return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
+    return mechanism.replace(without=gone)
 
 
 def drop_stale_groups(mechanism: Mechanism, context: Context) -> Mechanism:

@@ -72,7 +72,7 @@ def _explicit(whole: Mechanism, imported: set[Id]) -> Mechanism | None:
             return None
         else:
             edges.update(_weightless(whole, key))
-    return whole.with_graph(whole.graph.replace(vertices=vertices, edges=edges))
+    return whole.replace(vertices=vertices, edges=edges)
 
 
 def _weightless(whole: Mechanism, body: Id) -> dict[Id, RobotEdge]:

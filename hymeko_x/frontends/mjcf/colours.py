@@ -40,7 +40,7 @@ def with_mean_colours(mechanism: Mechanism) -> Mechanism:
         if view.shape.rgba is not None and view.material in means:
             shape = replace(view.shape, rgba=_times(view.shape.rgba, means[view.material]))
             edges[view.id] = replace(mechanism.graph.edges[view.id], data=shape)
-    return mechanism.with_graph(mechanism.graph.replace(vertices=materials, edges=edges, without=layers))
+    return mechanism.replace(vertices=materials, edges=edges, without=layers)
 
 
 def _patterned(mechanism: Mechanism) -> dict[Id, tuple[Id, Rgba]]:

@@ -67,7 +67,7 @@ def complete(mechanism: Mechanism, printed: Printed, files: Files, report: Repor
         return mechanism
     alone = None if scaled or sprung or meshes or fitted else _computed_alone(mujoco, mechanism, wanted)
     if alone is not None:
-        return mechanism.with_graph(mechanism.graph.replace(vertices=alone))
+        return mechanism.replace(vertices=alone)
     legal, text = printed()
     assets, missing = _assets(mechanism, files)
     try:
@@ -83,12 +83,12 @@ def complete(mechanism: Mechanism, printed: Printed, files: Files, report: Repor
     edges = _with_springs(mechanism, model, order) if sprung and b"springdamper=" in text else {}
     edges |= _fitted(mechanism, mujoco, model, fitted, order)
     points = {key: _with_points(mechanism, mujoco, model, key) for key in meshes}
-    return mechanism.with_graph(mechanism.graph.replace(vertices={**bodies, **points}, edges=edges))
+    return mechanism.replace(vertices={**bodies, **points}, edges=edges)
 
 
 def _with_fields_of_view(mechanism: Mechanism) -> Mechanism:
     cameras = {key: replace(camera, fovy=_FOVY) for key, camera in mechanism.vertices(Camera) if _has_usual_lens(camera)}
-    return mechanism.with_graph(mechanism.graph.replace(vertices=cameras)) if cameras else mechanism
+    return mechanism.replace(vertices=cameras)
 
 
 def _has_usual_lens(camera: Camera) -> bool:

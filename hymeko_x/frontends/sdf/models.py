@@ -318,4 +318,4 @@ def with_world_link_as_world(mechanism: Mechanism) -> Mechanism:
     above = mechanism.parent_joint.get(link)
     if above is None or above.parent != WORLD or above.joint.dofs or mechanism.children.get(link) or above.parent_pose != above.child_pose:
         return mechanism
-    return rename(mechanism.with_graph(mechanism.graph.replace(without=[above.id])), {link: WORLD})
+    return rename(mechanism.replace(without=[above.id]), {link: WORLD})

@@ -30,7 +30,7 @@ def complete(mechanism: Mechanism, _printed: Callable[[], tuple[Mechanism, bytes
             edges[key] = replace(mechanism.graph.edges[key], data=Joint())
             message = f"{key} is in a static model, in which nothing moves; it is written as fixed"
             report.note(codes.REWRITTEN, message, mechanism.origin(key), element=str(key))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+    return mechanism.replace(edges=edges)
 
 
 def _static_scopes(mechanism: Mechanism) -> set[str]:
