@@ -223,3 +223,14 @@ class ManyFiles(Struct, frozen=True):
             with suppress(OSError):
                 return files.read(path)
         return self.all[-1].read(path)
+
+
+def file_stem(uri: str) -> str:
+    """The name of a file without folders and suffix (``package://a/b/hip.stl``, ``a.usdz[b/hip.png]`` -> ``hip``); may be empty."""
+    last = uri.replace("\\", "/").rstrip("/]").rpartition("/")[2]
+    return last.rpartition(".")[0] or last
+
+
+def suffix_of(path: str) -> str:
+    """The suffix of a path in small letters, with its dot."""
+    return posixpath.splitext(path.replace("\\", "/").rstrip("]"))[1].lower()

@@ -17,8 +17,10 @@ from hymeko_x import codes, formats
 from hymeko_x.assets.pack import package_hint
 from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir import parts
-from hymeko_x.ir.mechanism import LUMPED_KINDS, WORLD, Id, JointView, Mechanism, ShapeView, suffix_of
+from hymeko_x.ir.ids import LUMPED_KINDS
+from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView
 from hymeko_x.rewrite.inertia import principal_moments
+from hymeko_x.source import suffix_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
 from hymeko_x.assets.shelf import read_file
-from hymeko_x.ir.mechanism import suffix_of
+from hymeko_x.source import suffix_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

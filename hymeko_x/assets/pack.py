@@ -22,10 +22,10 @@ from hymeko_x.assets.companions import copy_companions
 from hymeko_x.assets.resolve import is_of_nameless_package
 from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.mechanism import file_stem, subset_edge, suffix_of
+from hymeko_x.ir.mechanism import subset_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Mesh, Role, Texture
-from hymeko_x.source import find_stand_in
+from hymeko_x.source import file_stem, find_stand_in, suffix_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Set

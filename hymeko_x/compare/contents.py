@@ -9,9 +9,9 @@ from msgspec.structs import replace
 
 from hymeko_x import formats
 from hymeko_x.compare.diff import Difference
-from hymeko_x.ir.mechanism import suffix_of
 from hymeko_x.ir.parts import Mesh, Role, Texture
 from hymeko_x.ir.values import number_text
+from hymeko_x.source import suffix_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

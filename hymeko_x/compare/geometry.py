@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from hymeko_x.ir.mechanism import suffix_of
 from hymeko_x.ir.parts import Mesh
 from hymeko_x.ir.provenance import StoredMesh
+from hymeko_x.source import suffix_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,9 +8,10 @@ from hymeko_x import formats
 from hymeko_x.compare.diff import Difference, Tolerance, diff
 from hymeko_x.compare.relevance import relevant
 from hymeko_x.compare.units import unit_of
-from hymeko_x.ir.mechanism import ROOT, file_stem
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Mesh, Texture
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -5,7 +5,6 @@ Everything that a frontend returns and a backend takes. Ids are unique per kind,
 
 from __future__ import annotations
 
-import posixpath
 from functools import cached_property
 from itertools import chain
 from types import MappingProxyType
@@ -14,9 +13,10 @@ from typing import TYPE_CHECKING, TypeGuard, TypeVar
 from msgspec import Struct, field
 from msgspec.structs import replace
 
-from hymeko_x.ir import lumped, parts
+from hymeko_x.ir import parts
 from hymeko_x.ir.fields import NUMBERS, Noted
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
+from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.ids import ROOT as ROOT
 from hymeko_x.ir.ids import WORLD as WORLD
 from hymeko_x.ir.ids import Id as Id
@@ -37,45 +37,6 @@ if TYPE_CHECKING:
 P = TypeVar("P")
 T = TypeVar("T")
 
-
-KINDS: Mapping[type, str] = MappingProxyType(
-    {
-        parts.Body: "body",
-        parts.World: "world",
-        parts.Frame: "frame",
-        parts.Material: "material",
-        parts.Texture: "texture",
-        parts.Mesh: "mesh",
-        parts.Actuator: "actuator",
-        parts.Sensor: "sensor",
-        parts.Camera: "camera",
-        parts.Light: "light",
-        parts.PoseSet: "pose",
-        lumped.Spring: "spring",
-        lumped.Damper: "damper",
-        lumped.Mass: "mass",
-        lumped.Port: "port",
-        parts.Datum: "datum",
-        parts.Shape: "shape",
-        parts.Mount: "mount",
-        parts.Layer: "layer",
-        parts.Subset: "subset",
-        parts.Joint: "joint",
-        parts.Coupling: "coupling",
-        parts.Loop: "loop",
-        parts.Tendon: "tendon",
-        parts.Drive: "drive",
-        parts.Sense: "sense",
-        parts.Stance: "stance",
-        parts.Contact: "contact",
-        lumped.Constitutive: "constitutive",
-        parts.Relation: "relation",
-        parts.Nest: "nest",
-    }
-)
-"""The kind of every part: an element's id has the kind of its part."""
-LUMPED_KINDS = frozenset({"spring", "damper", "mass", "port", "datum"})
-"""The kinds of vertices of graphs and of lumped systems, which are no robots."""
 
 RobotArc = Arc[Id, parts.Weight]
 RobotEdge = Edge[Id, parts.EdgePart, parts.Weight]
@@ -399,14 +360,3 @@ def _posed(target: Id, sign: int, pose: Pose) -> RobotArc:
     if pose is IDENTITY or (pose.written is None and pose.quat == IDENTITY.quat and pose.xyz == IDENTITY.xyz):
         return Arc(target, sign)
     return Arc(target, sign, pose)
-
-
-def file_stem(uri: str) -> str:
-    """The name of a file without folders and suffix (``package://a/b/hip.stl``, ``a.usdz[b/hip.png]`` -> ``hip``); may be empty."""
-    last = uri.replace("\\", "/").rstrip("/]").rpartition("/")[2]
-    return last.rpartition(".")[0] or last
-
-
-def suffix_of(path: str) -> str:
-    """The suffix of a path in small letters, with its dot."""
-    return posixpath.splitext(path.replace("\\", "/").rstrip("]"))[1].lower()

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hymeko_x.ir.mechanism import suffix_of
 from hymeko_x.meshes.scene import read_scene
 from hymeko_x.meshes.stl import read_stl
 from hymeko_x.meshes.submesh import MOST_FACES, Appearance, ColouredMesh, MaterialEntry, MaterialGroup, Submesh, Unreadable
 from hymeko_x.meshes.weld import joined
+from hymeko_x.source import suffix_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

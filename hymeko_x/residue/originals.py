@@ -15,10 +15,9 @@ from msgspec.structs import replace
 from hymeko_x import formats
 from hymeko_x.assets.companions import WITH_COMPANIONS, beside, companions_of
 from hymeko_x.assets.shelf import read_file, safe_name
-from hymeko_x.ir.mechanism import suffix_of
 from hymeko_x.residue.digests import digests_text, with_edited_files
 from hymeko_x.residue.stand_ins import is_copy
-from hymeko_x.source import OriginalFiles, PackageFiles, PlacedFiles
+from hymeko_x.source import OriginalFiles, PackageFiles, PlacedFiles, suffix_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

@@ -10,10 +10,11 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.fields import layout_of
-from hymeko_x.ir.mechanism import WORLD, Id, file_stem
+from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import Names
 from hymeko_x.ir.parts import Joint, Mesh, Role, Shape
 from hymeko_x.ir.values import IDENTITY, Pose
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

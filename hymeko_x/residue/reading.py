@@ -8,7 +8,8 @@ from msgspec import NODEFAULT
 
 from hymeko_x.compare.leaves import TURN
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import WORLD, Extra, Id
 from hymeko_x.ir.parts import EdgePart
 from hymeko_x.ir.provenance import Provenance
 from hymeko_x.ir.types import fits, is_sound

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from msgspec.structs import replace
 
 from hymeko_x import formats
-from hymeko_x.ir.mechanism import suffix_of
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.ir.provenance import StoredLook, StoredMesh
 from hymeko_x.ir.values import X, Y, Z, rotate
+from hymeko_x.source import suffix_of
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Iterator

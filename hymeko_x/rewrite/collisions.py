@@ -9,10 +9,11 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import native_format
-from hymeko_x.ir.mechanism import file_stem, shape_edge
+from hymeko_x.ir.mechanism import shape_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Mesh, MeshShape, Role
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge, ShapeView

@@ -13,7 +13,8 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.ir import lumped
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
-from hymeko_x.ir.mechanism import LUMPED_KINDS, WORLD, Id, Mechanism, joint_edge
+from hymeko_x.ir.ids import LUMPED_KINDS
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Actuator, Body, Dof, DofKind, Drive, Inertial, Joint, World
 from hymeko_x.ir.values import ZERO, Tensor, X, Z

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, TypeVar
 from msgspec.structs import replace
 
 from hymeko_x.ir.graph import Arc, Hypergraph
-from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Mechanism
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.names import names_in_use, with_dof_names
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Joint, Material, Mesh, Shape, Texture, World

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from lsprotocol import types
 
 from hymeko_x.diagnostics import Refusal
-from hymeko_x.ir.mechanism import KINDS, Id
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Body, Joint
 from hymeko_x.ir.values import number_text, numbers_text, rpy_from_quat
 from hymeko_x.language.formatting import format_text

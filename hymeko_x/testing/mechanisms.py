@@ -10,8 +10,8 @@ from msgspec import Struct
 from hymeko_x.formats.hymeko.nesting import nest_edge, nest_key, prefix_of
 from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
+from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.mechanism import (
-    KINDS,
     ROOT,
     WORLD,
     Extra,

@@ -8,9 +8,10 @@ from hypothesis import strategies as st
 
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import Id, Mechanism, coupling_edge, file_stem, joint_edge, layer_edge, shape_edge
+from hymeko_x.ir.mechanism import Id, Mechanism, coupling_edge, joint_edge, layer_edge, shape_edge
 from hymeko_x.ir.names import Names
 from hymeko_x.ir.values import Pose, Written, plane_axes, pose_from_rpy, rotate_tensor, unit
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import RobotEdge

@@ -19,10 +19,11 @@ from hymeko_x.assets.shelf import Shelf, safe_name
 from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Report
 from hymeko_x.formats import Assets
-from hymeko_x.ir.mechanism import Id, Mechanism, file_stem, layer_edge, shape_edge
+from hymeko_x.ir.mechanism import Id, Mechanism, layer_edge, shape_edge
 from hymeko_x.ir.parts import Material, Mesh, MeshShape, Role, Shape, Texture
 from hymeko_x.ir.values import IDENTITY
 from hymeko_x.rewrite.context import Options
+from hymeko_x.source import file_stem
 from tests.meshes.test_mesh import BOX, STL, dae
 from tests.robots import MemoryFiles, body, chain
 

@@ -15,7 +15,8 @@ from hymeko_x.compare.diff import Difference, Tolerance, diff
 from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.fields import attributes_of
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
-from hymeko_x.ir.mechanism import KINDS, ROOT, Extra, Id, Mechanism, RobotEdge
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism, RobotEdge
 from hymeko_x.ir.values import Pose, pose_from_rpy, quat_about
 from hymeko_x.testing import mechanisms
 

@@ -28,7 +28,8 @@ from hymeko_x.draw.graph.tree import tree
 from hymeko_x.draw.graph.tree_picture import tree_picture
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Mechanism, RobotEdge, coupling_edge, joint_edge, shape_edge
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, RobotEdge, coupling_edge, joint_edge, shape_edge
 from hymeko_x.ir.values import Pose
 from hymeko_x.testing import mechanisms
 

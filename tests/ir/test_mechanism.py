@@ -17,7 +17,6 @@ from hymeko_x.ir.mechanism import (
     Id,
     Mechanism,
     coupling_edge,
-    file_stem,
     joint_edge,
     layer_edge,
     mount_edge,
@@ -28,6 +27,7 @@ from hymeko_x.ir.mechanism import (
 from hymeko_x.ir.names import Names
 from hymeko_x.ir.notations import word
 from hymeko_x.ir.values import IDENTITY, Pose
+from hymeko_x.source import file_stem
 
 A, B, C, D, E = (Id("body", name) for name in "abcde")
 HINGE = parts.Joint((parts.Dof(),))

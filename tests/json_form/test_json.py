@@ -23,7 +23,8 @@ from hymeko_x.frontends.json import read
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import KINDS, Id, Mechanism
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.rewrite.context import Options
 from hymeko_x.source import Source
 from hymeko_x.testing import mechanisms

@@ -23,7 +23,7 @@ from hymeko_x.formats.hymeko import (
 )
 from hymeko_x.formats.hymeko.units import BASE_UNITS
 from hymeko_x.frontends.hymeko import read
-from hymeko_x.ir.mechanism import KINDS
+from hymeko_x.ir.ids import KINDS
 from hymeko_x.language.expansion import MAX_ITEMS
 from hymeko_x.language.expressions import CONSTANTS, FUNCTIONS
 from hymeko_x.language.machine import MAX_DEPTH

@@ -19,7 +19,8 @@ from hymeko_x.backends.hymeko.values import value_of
 from hymeko_x.factor.forms import Hole, Signed, words
 from hymeko_x.factor.unify import unify
 from hymeko_x.formats.hymeko import AXES, RESERVED
-from hymeko_x.ir.mechanism import KINDS, Id
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.names import free_name
 from hymeko_x.ir.values import number_text
 from hymeko_x.language.printer import print_item

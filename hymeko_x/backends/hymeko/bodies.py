@@ -11,19 +11,19 @@ from hymeko_x.backends.hymeko.values import pose_value, value_of
 from hymeko_x.formats.hymeko import SHAPE_ROLES, SHAPE_WORDS, SOLIDS
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
-from hymeko_x.ir.mechanism import Id, file_stem
 from hymeko_x.ir.names import Names
 from hymeko_x.ir.uses import first_uses
 from hymeko_x.ir.values import IDENTITY, ZERO
 from hymeko_x.ir.written import length_of
 from hymeko_x.language.syntax import Field, Item, Node, Value
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.backends.hymeko.sheet import HymekoSheet
     from hymeko_x.backends.hymeko.values import Angles
-    from hymeko_x.ir.mechanism import Mechanism, ShapeView
+    from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.values import Pose
 
 _SOLID_WORDS = {kind: word for word, kind in SOLIDS.items()}

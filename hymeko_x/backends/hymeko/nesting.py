@@ -9,7 +9,8 @@ from msgspec import Struct, field
 
 from hymeko_x.formats.hymeko import RESERVED
 from hymeko_x.formats.hymeko.nesting import OUTER, nest_edge, nest_key, prefix_of
-from hymeko_x.ir.mechanism import KINDS, Id
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Nest
 from hymeko_x.language.expansion import Scope
 from hymeko_x.language.syntax import QuotedName

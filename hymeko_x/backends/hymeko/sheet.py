@@ -12,7 +12,8 @@ from hymeko_x.backends.hymeko.values import pose_value, value_of
 from hymeko_x.formats import native_format
 from hymeko_x.formats.hymeko import CHILD_CLASS, NAMED_AFTER_ID, PARTS, SHORT_TYPES, TARGETS, attached_key
 from hymeko_x.ir.fields import layout_of
-from hymeko_x.ir.mechanism import KINDS, WORLD, Id
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.values import Pose
 from hymeko_x.language.classes import IMPLIED, SAME
 from hymeko_x.language.markup import value_of_text

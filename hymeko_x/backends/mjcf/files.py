@@ -17,10 +17,11 @@ from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
 from hymeko_x.formats.mjcf.files import refused
 from hymeko_x.formats.mjcf.words import from_mjcf
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge, suffix_of
+from hymeko_x.ir.mechanism import Extra, Id, shape_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.meshes.images import UnreadableImage, png_bytes
+from hymeko_x.source import file_stem, suffix_of
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Code, Report

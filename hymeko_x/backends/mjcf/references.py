@@ -13,8 +13,9 @@ from hymeko_x.assets.shelf import read_file
 from hymeko_x.formats.mjcf.files import mended, refused
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.formats.mjcf.words import NAME, below, joined, settings_of
-from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism, suffix_of
+from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
 from hymeko_x.ir.parts import Mesh, Texture
+from hymeko_x.source import suffix_of
 from hymeko_x.xml.text import escaped, unescaped
 
 if TYPE_CHECKING:

@@ -13,10 +13,11 @@ from hymeko_x.assets.pack import Keep, keep_references
 from hymeko_x.assets.shelf import read_file
 from hymeko_x.formats import mesh_reader
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.mechanism import file_stem, shape_edge, subset_edge, suffix_of
+from hymeko_x.ir.mechanism import shape_edge, subset_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.meshes.submesh import LoadedMesh
+from hymeko_x.source import file_stem, suffix_of
 
 if TYPE_CHECKING:
     import numpy as np

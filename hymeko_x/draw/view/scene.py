@@ -12,11 +12,12 @@ from hymeko_x.assets.companions import companion_reader
 from hymeko_x.assets.shelf import read_file
 from hymeko_x.draw.view.motion import Motion
 from hymeko_x.ir.geometry import Box, Capsule, Cylinder, Ellipsoid, MeshShape, NoShape, Sphere
-from hymeko_x.ir.mechanism import WORLD, suffix_of
+from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Material, Mesh, Role
 from hymeko_x.meshes.reader import inline_part, read_parts
 from hymeko_x.meshes.submesh import Submesh, Unreadable
 from hymeko_x.residue.originals import files_of
+from hymeko_x.source import suffix_of
 from hymeko_x.verify import model_of
 from hymeko_x.verify.model import WORLD as GROUND
 

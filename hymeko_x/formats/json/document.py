@@ -15,7 +15,8 @@ from msgspec import NODEFAULT, Struct, defstruct, field
 from hymeko_x.formats.json import MARK, VERSION
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import layout_of
-from hymeko_x.ir.mechanism import KINDS, Extra, Id
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import Extra, Id
 from hymeko_x.ir.types import hints_of
 from hymeko_x.ir.values import Pose  # noqa: TC001 - msgspec evaluates the types of fields
 

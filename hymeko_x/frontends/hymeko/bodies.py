@@ -11,10 +11,11 @@ from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.builder import sign_of
 from hymeko_x.frontends.hymeko.values import describe
 from hymeko_x.ir import parts
-from hymeko_x.ir.mechanism import Id, file_stem, shape_edge
+from hymeko_x.ir.mechanism import Id, shape_edge
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Tensor, Vec3, rotate_tensor
 from hymeko_x.ir.written import length_of
 from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_field, is_list
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder

@@ -14,7 +14,8 @@ from hymeko_x.formats.hymeko.classes import classes_in_force
 from hymeko_x.formats.hymeko.nesting import OUTER
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.graph import Arc
-from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Provenance
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import WORLD, Id, Provenance
 from hymeko_x.ir.parts import Datum, Texture, Weight, World
 from hymeko_x.ir.values import compose
 from hymeko_x.language.classes import native

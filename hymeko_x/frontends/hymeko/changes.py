@@ -13,7 +13,7 @@ from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.bodies import add_shapes, change_inertial
 from hymeko_x.frontends.hymeko.joints import axis_of
 from hymeko_x.ir import parts
-from hymeko_x.ir.mechanism import KINDS
+from hymeko_x.ir.ids import KINDS
 from hymeko_x.language.syntax import Ref
 
 if TYPE_CHECKING:

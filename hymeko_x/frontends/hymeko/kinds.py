@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import AXES
-from hymeko_x.ir.mechanism import KINDS
+from hymeko_x.ir.ids import KINDS
 from hymeko_x.language.prototypes import role_of
 from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, Value, is_field, is_list
 

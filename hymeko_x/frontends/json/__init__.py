@@ -16,7 +16,8 @@ from hymeko_x.frontends.json.data import settle
 from hymeko_x.frontends.json.sound import check
 from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
-from hymeko_x.ir.mechanism import KINDS, ROOT, Id, Mechanism, Provenance
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import ROOT, Id, Mechanism, Provenance
 from hymeko_x.ir.provenance import take_provenance
 from hymeko_x.source import Reading
 

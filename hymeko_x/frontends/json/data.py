@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.ir.mechanism import KINDS
+from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.parts import Datum, Relation
 
 if TYPE_CHECKING:

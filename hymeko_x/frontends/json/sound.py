@@ -12,7 +12,8 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
 from hymeko_x.formats.json.document import PARTS
-from hymeko_x.ir.mechanism import KINDS, WORLD, Id
+from hymeko_x.ir.ids import KINDS
+from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.values import Pose, are_numbers
 
 if TYPE_CHECKING:

@@ -10,9 +10,10 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf.notations import LAYERS
 from hymeko_x.formats.mjcf.places import MATERIAL, MESH
 from hymeko_x.formats.mjcf.words import joined
-from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
+from hymeko_x.ir.mechanism import Id, layer_edge
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Material, Mesh, Texture
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from hymeko_x.formats.mjcf.tree import Element

@@ -19,9 +19,10 @@ from hymeko_x.formats.mjcf.places import PLACE, Place
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.formats.mjcf.words import NAME, compiler_has, compilers, joined, mentions, settings_of
 from hymeko_x.frontends.mjcf.colours import with_mean_colours
-from hymeko_x.ir.mechanism import ROOT, Id, Mechanism, file_stem, shape_edge
+from hymeko_x.ir.mechanism import ROOT, Id, Mechanism, shape_edge
 from hymeko_x.ir.parts import Body, Box, Camera, Capsule, Cylinder, DofKind, Ellipsoid, Inertial, Joint, Mesh, NoShape, Sphere
 from hymeko_x.ir.values import pose, rotate_tensor, unit_quat
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report

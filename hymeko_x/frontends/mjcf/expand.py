@@ -23,7 +23,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf.tree import Element, parse, parse_text, verbatim
 from hymeko_x.formats.mjcf.words import EXPANDED_BY_MUJOCO, joined, settings_of
-from hymeko_x.ir.mechanism import file_stem
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report

@@ -9,9 +9,10 @@ from hymeko_x import codes
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf.values import NUMBER, PAIR, VECTOR, Field
 from hymeko_x.frontends.sdf.materials import read_material
-from hymeko_x.ir.mechanism import file_stem, shape_edge
+from hymeko_x.ir.mechanism import shape_edge
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Mesh, MeshShape, NoShape, Plane, Role, Shape, Sphere
 from hymeko_x.ir.values import Pose, Z, compose, quat_from_z, unit
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

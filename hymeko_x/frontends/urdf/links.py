@@ -10,10 +10,11 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
 from hymeko_x.frontends.urdf.builder import read_origin, take_name, take_number, take_numbers
 from hymeko_x.frontends.urdf.materials import read_shape_material
-from hymeko_x.ir.mechanism import ROOT, file_stem, shape_edge
+from hymeko_x.ir.mechanism import ROOT, shape_edge
 from hymeko_x.ir.notations import WITHOUT_TENSOR
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Inertial, InertialWritten, Mesh, MeshShape, NoShape, Shape, Sphere
 from hymeko_x.ir.values import rotate_tensor
+from hymeko_x.source import file_stem
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:

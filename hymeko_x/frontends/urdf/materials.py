@@ -13,8 +13,9 @@ from hymeko_x import codes
 from hymeko_x.formats.urdf import notations
 from hymeko_x.formats.urdf.notations import Defined
 from hymeko_x.frontends.urdf.builder import Definition, take_numbers
-from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
+from hymeko_x.ir.mechanism import Id, layer_edge
 from hymeko_x.ir.parts import Material, Texture
+from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
