@@ -21,6 +21,7 @@ from hymeko_x.language.syntax import (
     Import,
     Item,
     Node,
+    Ref,
     Stereotype,
     Using,
     Value,
@@ -160,9 +161,13 @@ def _filled_arc(arc: ArcItem, environment: Environment, file: str) -> ArcItem:
     weight = arc.weight
     if weight is not None:
         weight = tuple(fill_value(value, environment, arc, file) for value in weight)
-    path = tuple(fill_text(step, environment, arc, file) for step in arc.ref.path)
     items = tuple(fill(inner, environment, file) for inner in arc.items)
-    return arc._replace(ref=arc.ref._replace(path=path), weight=weight, items=items)
+    role = fill_text(arc.role, environment, arc, file)
+    return arc._replace(ref=_filled_ref(arc.ref, environment, arc, file), role=role, weight=weight, items=items)
+
+
+def _filled_ref(ref: Ref, environment: Environment, item: Item, file: str) -> Ref:
+    return ref._replace(path=tuple(fill_text(step, environment, item, file) for step in ref.path))
 
 
 def fill_value(value: Value, environment: Environment, item: Item, file: str) -> Value:
@@ -177,7 +182,7 @@ def fill_value(value: Value, environment: Environment, item: Item, file: str) ->
         return _value_of(value.text, environment, item, file)
     if type(value) is tuple:
         return tuple(fill_value(part, environment, item, file) for part in value)
-    return value
+    return _filled_ref(value, environment, item, file) if isinstance(value, Ref) else value
 
 
 def fill_text(text: str, environment: Environment, item: Item, file: str) -> str:

@@ -61,6 +61,44 @@ def test_left_and_right_are_instances_of_one_template() -> None:
     )
 
 
+HALVES = """
+twins : robot {
+  pelvis {}
+  leftpaint : material { rgba [1 0 0] }
+  rightpaint : material { rgba [0 0 1] }
+  ball1 { [0 0 1] + world }
+  ball2 { [0 0 2] + world }
+"""
+HALF = """
+  {0}_torso {{ mass 5 com [0.25 0.125 -0.2] inertia [0.07 0.07 0.01] collision {{ sphere 0.1 material={0}paint }} childclass=body{1} }}
+  @{0}_waist : compound {{ [0 0 0.25] + pelvis - {0}_torso bend{1} : hinge {{ axis=X limit [-10 40] }} turn{1} : hinge {{}} }}
+  {0}_drive : motor {{ [40] turn{1} - {0}_waist ctrlrange [-1 1] ctrllimited=true }}
+  {0}_ball : frame {{ [0.1 0 0] + ball{1} }}
+"""
+
+
+def test_names_in_elements_and_of_others_may_have_a_parameter() -> None:
+    """Those of dofs, shapes, materials, default classes, parents, and of the dof that a motor drives."""
+    text = canonical(f"{HALVES}{HALF.format('left', 1)}{HALF.format('right', 2)}}}")
+    assert text.endswith('left : torso_to_ball(name=leftpaint name2="1") {}\n  right : torso_to_ball(name=rightpaint name2="2") {}\n}\n')
+    assert "childclass=`body${name2}`" in text
+    assert "drive : motor { [40] `turn${name2}` - waist " in text
+    assert "collision { sphere 0.1 material=`${name}` }" in text
+
+
+def test_a_word_of_the_language_is_no_parameter() -> None:
+    """An axis that differs is no name that differs: no `axis=${name}`."""
+    text = canonical(f"{HALVES}{HALF.format('left', 1)}{HALF.format('right', 2).replace('axis=X', 'axis=Y')}}}")
+    assert "torso_to_ball" not in text
+
+
+def test_a_template_is_not_named_like_a_default_class() -> None:
+    halves = HALF.format("left", 1) + HALF.format("right", 2)
+    section = 'written { mjcf "4.0" } main() : class { torso_to_ball() { motor { ctrlrange [-1 1] } } }'
+    text = canonical(f"{HALVES} {section} {halves}}}")
+    assert "torso_to_ball2(name, name2) : assembly {" in text
+
+
 def test_what_most_instances_give_is_the_default() -> None:
     legs = "".join(leg(side, "", lower=lower) for side, lower in (("a", "-20"), ("b", "-10"), ("c", "-10")))
     text = canonical(f"tripod : robot {{ pelvis {{}} {legs} }}")

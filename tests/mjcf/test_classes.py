@@ -66,6 +66,13 @@ def test_actuators_share_a_class_as_well() -> None:
     assert '<position name="rh_ankle" class="ankle" joint="rh_ankle"/>' in text
 
 
+def test_joints_and_motors_share_a_name_inside_of_one_class_only() -> None:
+    """A class that stood in two others would be defined twice."""
+    found = classes.Defaults()
+    wanted = (("joint", "main"), ("joint", "arm"), ("position", "main"), ("position", "main"))
+    assert [found.free("arm", tag, around) for tag, around in wanted] == ["arm", "arm_2", "arm", "arm_3"]
+
+
 def test_the_classes_of_roles_give_no_type_and_no_size() -> None:
     box = '<visual><geometry><box size="1 2 3"/></geometry></visual>'
     ball = '<visual><geometry><sphere radius="1"/></geometry></visual>'

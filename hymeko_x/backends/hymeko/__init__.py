@@ -158,7 +158,7 @@ def _given(sheet: HymekoSheet) -> Given:
 
 def _assembled(pieces: Sequence[Piece], given: Given) -> list[Item]:
     """The stereotypes and templates, then the pieces: as they are, in assemblies, or as instances."""
-    taken = {*standard_templates(), *RESERVED}  # a template must not stand before a type
+    taken = {*standard_templates(), *RESERVED, *given}  # a template must not stand before a type
     defined, placed = templates(pieces, taken)
     blocks = [*(node.items for node in defined), *(() if isinstance(piece, Instance) else piece.items for piece in placed)]
     homes = ["" if isinstance(piece, Node | Instance) else piece.home for piece in placed]

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from hymeko_x.backends.hymeko.values import value_of
 from hymeko_x.factor.forms import Hole, Signed, words
 from hymeko_x.factor.unify import unify
-from hymeko_x.formats.hymeko import AXES, RESERVED
+from hymeko_x.formats.hymeko import AXES, RESERVED, ROLE_MOVES
 from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.names import free_name
@@ -47,6 +47,8 @@ _MOST_WORDS = 4
 _BARE = "datum"
 """Elements that may be a name alone, which has no place in an assembly."""
 _NO_NAMES = {*KINDS.values(), *RESERVED, *AXES}
+_ROLES = frozenset(("", "at", "mimic", *ROLE_MOVES))
+"""Roles of arcs that are words of the language; others are names."""
 
 
 class Piece(NamedTuple):
@@ -169,7 +171,7 @@ _WORD = re.compile(r"[A-Za-z]+")
 
 
 class _Leaf(NamedTuple):
-    """A number or text of a piece, and the field in which it stands."""
+    """A number, text or name of a piece, and the field in which it stands."""
 
     value: float | str
     field: str
@@ -200,7 +202,7 @@ def _is_bound(piece: Piece) -> bool:
 
 
 def _skeleton(piece: Piece) -> str:
-    """The text of a piece without numbers and texts, which pieces of one template have in common."""
+    """The text of a piece without numbers, texts and names, which pieces of one template have in common."""
     return print_item(Node("", _filled(piece.items, lambda leaf: 0.0 if isinstance(leaf.value, float) else "")))
 
 
@@ -290,7 +292,7 @@ def _name(piece: Piece) -> str:
 
 
 def _leaves(items: tuple[Item, ...]) -> list[_Leaf]:
-    """The numbers and texts of items, in order."""
+    """The numbers, texts and names of items, in order."""
     found: list[_Leaf] = []
 
     def collect(leaf: _Leaf) -> Value:
@@ -301,19 +303,35 @@ def _leaves(items: tuple[Item, ...]) -> list[_Leaf]:
     return found
 
 
-def _filled(items: tuple[Item, ...], fill: Callable[[_Leaf], Value]) -> tuple[Item, ...]:
-    """The items with every number and text replaced, in order."""
+def _filled(items: tuple[Item, ...], fill: Callable[[_Leaf], Value], *, within: bool = False) -> tuple[Item, ...]:
+    """The items with every number, text and name of something else replaced, in order; ``within``: they stand in an element."""
     done: list[Item] = []
     for item in items:
         if isinstance(item, Field) and item.value is not None:
             item = item._replace(value=_filled_value(item.value, item.name, fill))
         elif isinstance(item, Node):
-            item = item._replace(items=_filled(item.items, fill))
+            name = _filled_name(item.name, fill) if within and item.stereotypes else item.name
+            item = item._replace(name=name, items=_filled(item.items, fill, within=True))
         elif isinstance(item, ArcItem):
             weight = item.weight and tuple(_filled_value(value, "value", fill) for value in item.weight)
-            item = item._replace(weight=weight, items=_filled(item.items, fill))
+            role = item.role if item.role in _ROLES else _filled_name(item.role, fill)
+            inner = _filled(item.items, fill, within=True)
+            item = item._replace(role=role, ref=_filled_ref(item.ref, fill), weight=weight, items=inner)
         done.append(item)
     return tuple(done)
+
+
+def _filled_ref(ref: Ref, fill: Callable[[_Leaf], Value]) -> Ref:
+    return ref._replace(path=tuple(_filled_name(step, fill) for step in ref.path))
+
+
+def _filled_name(name: str, fill: Callable[[_Leaf], Value]) -> str:
+    """A name; a word with a meaning stays."""
+    if name in _NO_NAMES:
+        return name
+    text = fill(_Leaf(name, "name"))
+    assert isinstance(text, str)
+    return text
 
 
 def _filled_value(value: Value, field: str, fill: Callable[[_Leaf], Value]) -> Value:
@@ -321,7 +339,7 @@ def _filled_value(value: Value, field: str, fill: Callable[[_Leaf], Value]) -> V
         return fill(_Leaf(value, field))
     if type(value) is tuple:
         return tuple(_filled_value(part, field, fill) for part in value)
-    return value
+    return _filled_ref(value, fill) if isinstance(value, Ref) else value
 
 
 def _number(text: Text, names: list[str]) -> Value:

@@ -71,15 +71,23 @@ class Class(Struct):
 
 
 class Defaults(Struct):
-    """The classes found, those that refine another one behind it, and the names that are taken."""
+    """The classes found, those that refine another one behind it, and by the names that are taken the tags and the class around."""
 
     classes: list[Class] = field(default_factory=list)
-    taken: dict[str, set[str]] = field(default_factory=lambda: {name: {"geom"} for name in (MAIN, *CLASSES.values())})
+    taken: dict[str, tuple[set[str], str]] = field(default_factory=lambda: {name: ({"geom"}, "") for name in (MAIN, *CLASSES.values())})
 
-    def free(self, wanted: str, tag: str) -> str:
-        """The name of a class for elements of this tag, with a number behind it when it is taken; joints and their motors may share it."""
-        name = free_name(re.sub(r"\W+", "_", wanted), lambda name: bool({tag, "geom"} & self.taken.get(name, set())), "_")
-        self.taken.setdefault(name, set()).add(tag)
+    def free(self, wanted: str, tag: str, around: str) -> str:
+        """The name of a class for elements of this tag, with a number behind it when it is taken.
+
+        Joints and their motors may share it inside the same class.
+        """
+
+        def is_taken(name: str) -> bool:
+            tags, other = self.taken.get(name, (set[str](), around))
+            return bool({tag, "geom"} & tags) or other != around
+
+        name = free_name(re.sub(r"\W+", "_", wanted), is_taken, "_")
+        self.taken.setdefault(name, (set(), around))[0].add(tag)
         return name
 
 
@@ -151,13 +159,14 @@ def _names(elements: list[Tag]) -> list[str]:
 
 def _make_class(tag: str, own_class: str | None, words: str, members: list[Tag], defaults: Defaults) -> None:
     """A class for what these elements share, in the class that they have, which is the same for all."""
-    around = members[0].attributes.get("class")
+    given = members[0].attributes.get("class")
     common = frozenset(_row(members[0])).intersection(*map(_row, members[1:]))
     own = {name: text for name, text in _row(members[0]) if (name, text) in common}
-    if not own or any(element.attributes.get("class") != around for element in members):
+    if not own or any(element.attributes.get("class") != given for element in members):
         return  # the class around has them already
-    name = defaults.free("_".join(filter(None, (own_class, words))), tag)
-    defaults.classes.append(Class(name, tag, own, around or MAIN))
+    around = given or MAIN
+    name = defaults.free("_".join(filter(None, (own_class, words))), tag, around)
+    defaults.classes.append(Class(name, tag, own, around))
     for element in members:
         _leave_to_class(element, own)
         element.attributes["class"] = name
