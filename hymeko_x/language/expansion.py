@@ -162,10 +162,14 @@ def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
 
 def _without_node_words(items: tuple[Item, ...]) -> tuple[Item, ...]:
     """The items without the word ``node`` before a vertex, which texts with a header in brackets have."""
-    pairs = zip(items, (*items, None)[1:], strict=True)
-    return tuple(
-        item for item, following in pairs if not (is_field(item, ("node",)) and item.value is None and isinstance(following, Node))
-    )
+    found: list[Item] = []
+    following: Item | None = None
+    for item in reversed(items):
+        if not (is_field(item, ("node",)) and item.value is None and isinstance(following, Node)):
+            found.append(item)
+        if not isinstance(item, Comment):
+            following = item
+    return tuple(reversed(found))
 
 
 def _is_type(item: Expansion, applied: set[tuple[str, int, int]]) -> bool:

@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 MAX_DEPTH = 200
 """Brackets inside brackets; far more than any robot has, and less than what the later stages can nest."""
 
-GAP_DEPTH = 2
-"""Gaps between tokens are collected outside of all brackets, and inside this many."""
-
 _CALCULATION = "EXPRESSION"
 """A calculation in parentheses is several tokens where only a group of arcs may stand: ``(name - target)``."""
 
@@ -116,8 +113,8 @@ class Machine:
         """The value of the start rule for a text.
 
         ``terminals`` turn the text and offset of a token into a value, ``actions`` the children of a rule and the offset of
-        its first character. Statements are taken whole where the terminals have them. ``gaps`` collects the gaps between tokens at the
-        outermost levels that are longer than one character.
+        its first character. Statements are taken whole where the terminals have them. ``gaps`` collects the gaps between tokens
+        that are longer than one character.
 
         Raises: ParseError, or TooDeep.
         """
@@ -186,7 +183,7 @@ class Machine:
                 depth += _DEPTH.get(word, 1)
                 if depth > MAX_DEPTH:
                     raise TooDeep(end - 1)
-            if position - end > 1 and depth <= GAP_DEPTH:
+            if position - end > 1:
                 gaps.append((end, position, depth))
             yield kind, word, start
             match = pattern.match(text, position)

@@ -1,20 +1,18 @@
-"""HyMeKo text to syntax tree, built while the LALR(1) machine reads, with the comments of the outermost levels in their places."""
+"""HyMeKo text to syntax tree, built while the LALR(1) machine reads, with the comments in their places."""
 
 from __future__ import annotations
 
-import re
-from bisect import bisect_left
 from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.language.comments import with_comments
 from hymeko_x.language.errors import excerpt, explain_syntax_error
-from hymeko_x.language.machine import GAP_DEPTH, MAX_DEPTH, Lines, Machine, ParseError, TooDeep
+from hymeko_x.language.machine import MAX_DEPTH, Lines, Machine, ParseError, TooDeep
 from hymeko_x.language.syntax import (
     ArcItem,
-    Comment,
     Constant,
     Document,
     Field,
@@ -31,11 +29,9 @@ from hymeko_x.language.syntax import (
 from hymeko_x.language.terminals import TERMINALS, Malformed, statements
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Mapping
 
     from hymeko_x.language.machine import Gap, Reduce
-
-_COMMENT = re.compile(r"#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/")
 
 
 def parse(text: str, name: str = "<text>") -> Document:
@@ -55,7 +51,7 @@ def parse(text: str, name: str = "<text>") -> Document:
         raise refuse(codes.SYNTAX, str(error), Origin(name, line, column), excerpt=excerpt(text, line, column, 1)) from error
     except ParseError as error:
         raise explain_syntax_error(text, name) from error
-    return _weave_comments(document, text, gaps, lines)
+    return with_comments(document, text, gaps, lines)
 
 
 class _Block(tuple[Item, ...]):
@@ -227,65 +223,3 @@ def _headed_node(parts: list[Any], _: int) -> Node:
 def machine() -> Machine:
     """The machine; a text is also read with other actions for the same rules (:mod:`hymeko_x.language.outline`)."""
     return Machine(frozenset({*_ACTIONS, *_item_actions(Lines("").place)}))
-
-
-# ---- comments ------------------------------------------------------------------------------------------------------------
-
-_Position = tuple[int, int]
-_END = (1 << 60, 0)
-
-
-def _weave_comments(document: Document, text: str, gaps: list[Gap], lines: Lines) -> Document:
-    """The document with the comments in the gaps of its outermost levels among its items and those of its nodes."""
-    levels: list[list[Comment]] = [[] for _ in range(GAP_DEPTH + 1)]
-    for depth, comment in _comments(text, gaps, lines):
-        levels[depth].append(comment)
-    if not any(levels):
-        return document
-    return document._replace(items=_woven(document.items, levels, 0, (0, 0), _END))
-
-
-def comment_text(token: str) -> str:
-    """The text of a comment, without its signs and the blanks around it."""
-    if token.startswith("#"):
-        return token[1:].strip()
-    return (token[2:] if token.startswith("//") else token[2:-2]).strip()
-
-
-def _comments(text: str, gaps: list[Gap], lines: Lines) -> Iterator[tuple[int, Comment]]:
-    """Every comment outside all blocks (0), directly in an outermost block (1), or in one of its nodes (2)."""
-    for start, end, depth in gaps:
-        for match in _COMMENT.finditer(text, start, end):
-            yield depth, Comment(comment_text(match[0]), *lines.place(match.start()))
-
-
-def _woven(items: tuple[Item, ...], levels: list[list[Comment]], depth: int, start: _Position, end: _Position) -> tuple[Item, ...]:
-    """The items of one block with the comments between two places; nodes with those of their own blocks."""
-    found: list[Item] = []
-    ends = [*(_position(item) or end for item in items[1:]), end]
-    for item, behind in zip(items, ends, strict=False):
-        place = _position(item)
-        if isinstance(item, Node) and place and any(_between(level, place, behind) for level in levels[depth + 1 :]):
-            item = item._replace(items=_woven(item.items, levels, depth + 1, place, behind))
-        found.append(item)
-    return tuple(_merged(found, list(_between(levels[depth], start, end))))
-
-
-def _between(comments: list[Comment], start: _Position, end: _Position) -> list[Comment]:
-    """The comments between two places; they are in order."""
-    return comments[bisect_left(comments, start, key=_position) : bisect_left(comments, end, key=_position)]
-
-
-def _merged(items: list[Item], comments: list[Comment]) -> list[Item]:
-    """Both in the order of their places; items without a place stay behind their predecessor."""
-    merged: list[Item] = []
-    rest = list(reversed(comments))
-    for item in items:
-        while rest and _position(item) and _position(rest[-1]) < _position(item):
-            merged.append(rest.pop())
-        merged.append(item)
-    return [*merged, *reversed(rest)]
-
-
-def _position(item: Item) -> tuple[int, int]:
-    return (item.line, item.column) if item.line else ()  # type: ignore[return-value]

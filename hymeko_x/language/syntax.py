@@ -143,7 +143,7 @@ class Constant(Syntax, frozen=True, gc=False):
 
 
 class Comment(Syntax, frozen=True, gc=False):
-    """A comment that stands between the items of the root or of the text itself; deeper ones are not kept."""
+    """A comment between the items of a block, or of the text itself."""
 
     text: str
     line: int = 0

@@ -111,12 +111,12 @@ def test_comments_inside_elements_stay() -> None:
 
 def test_comments_of_shapes_stay() -> None:
     text = 'r : robot {\n  a { collision { sphere 1 extra ["comment" "" "as scanned"] } }\n}\n'
-    assert canonical(text) == 'r : robot { a { collision { sphere 1 extra ["comment" "" "as scanned"] } } }\n'
+    assert canonical(text) == "r : robot { a { collision { /* as scanned */ sphere 1 } } }\n"
 
 
 def test_comments_of_a_template_are_not_repeated() -> None:
     text = "r : robot { leg() : assembly { // thigh\n thigh {} } left : leg { // mine\n } right : leg {} }"
-    assert [extra.text for extra in read_text(text).extras[Id("mechanism", "")]] == ["mine"]
+    assert [extra.text for extra in read_text(text).extras[Id("mechanism", "")]] == ["thigh", "mine"]
 
 
 @st.composite

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from hymeko_x.cli import main
 from hymeko_x.diagnostics import Refusal
+from hymeko_x.language.comments import comment_text
 from hymeko_x.language.formatting import format_text
 from hymeko_x.language.grammar import tokens
-from hymeko_x.language.parser import comment_text, parse
+from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import ArcItem, Comment, Document, Item, Node
 from hymeko_x.testing import DOCUMENTS

@@ -126,7 +126,7 @@ def _settings(sheet: HymekoSheet, plain: bool) -> list[Item]:
     }
     if notations:
         items.extend(written_items(notations, flags=False))
-    items.extend(foreign_items(_in_place(sheet.mechanism)[1], at_root=True))
+    items.extend(foreign_items(_in_place(sheet.mechanism)[1]))
     return items
 
 

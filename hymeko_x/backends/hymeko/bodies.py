@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.hymeko.extras import foreign_items, verbatim
+from hymeko_x.backends.hymeko.extras import with_extras
 from hymeko_x.backends.hymeko.parts import word_fields
 from hymeko_x.backends.hymeko.sheet import written_items
 from hymeko_x.backends.hymeko.values import pose_value, value_of
@@ -76,9 +76,7 @@ def _shape(sheet: HymekoSheet, view: ShapeView, names: Names) -> Item:
     notations = sheet.mechanism.notations.get(view.id)
     if notations:
         items.extend(written_items(notations))
-    extras = sheet.mechanism.extras.get(view.id, ())
-    items.extend(foreign_items(extra for extra in extras if extra.format != "comment"))
-    items.extend(verbatim(extra) for extra in extras if extra.format == "comment")  # this deep in a text comments are not kept
+    items = with_extras(items, sheet.mechanism.extras.get(view.id, ()))
     if len(items) == 1 and isinstance(items[0], Field) and items[0].name == "mesh":
         return Field(word, items[0].value)
     return Node(word, tuple(items))

@@ -20,18 +20,23 @@ _FORMATS = FOREIGN - {"hymeko"}
 _OWN_WORDS = frozenset({PLACE, INDENT, TEXT, markup.COMMENT})
 
 
-def foreign_items(extras: Iterable[Extra], *, at_root: bool = False, deep: bool = False) -> list[Item]:
-    """The items of all extras of one element: comments, a block for each format, and verbatim the texts that no block represents.
+def with_extras(items: list[Item], extras: Iterable[Extra]) -> list[Item]:
+    """The items of a block with the extras of its element: comments before them, those of formats behind."""
+    by_format = _by_format(extras)
+    comments = _comments(by_format.pop("comment", []))
+    return [*comments, *items, *(item for format, found in by_format.items() for item in _of_format(format, found, at_root=False))]
 
-    ``deep``: the element stands where the reader of text passes over comments.
-    """
+
+def foreign_items(extras: Iterable[Extra]) -> list[Item]:
+    """The items of the extras of the whole: a block for each format, and verbatim the texts that no block represents."""
+    return [item for format, found in _by_format(extras).items() for item in _of_format(format, found, at_root=True)]
+
+
+def _by_format(extras: Iterable[Extra]) -> dict[str, list[Extra]]:
     by_format: dict[str, list[Extra]] = {}
     for extra in extras:
         by_format.setdefault(extra.format, []).append(extra)
-    items: list[Item] = []
-    for format, found in by_format.items():
-        items.extend(_comments(found) if format == "comment" and not at_root and not deep else _of_format(format, found, at_root=at_root))
-    return items
+    return by_format
 
 
 def standing_items(extras: list[Extra], *, classes: bool = False) -> list[Item]:

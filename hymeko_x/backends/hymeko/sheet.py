@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 
-from hymeko_x.backends.hymeko.extras import foreign_items
+from hymeko_x.backends.hymeko.extras import with_extras
 from hymeko_x.backends.hymeko.nesting import Nesting, name_of
 from hymeko_x.backends.hymeko.values import pose_value, value_of
 from hymeko_x.formats import native_format
@@ -80,7 +80,7 @@ class HymekoSheet(Struct, frozen=True):
         items.extend(self.class_items(key))
         if notations:
             items.extend(written_items(notations, flags=key.kind not in NAMED_AFTER_ID))
-        items.extend(foreign_items(self.mechanism.extras.get(key, ()), deep=key in self.nesting.outer))
+        items = with_extras(items, self.mechanism.extras.get(key, ()))
         stereotypes: tuple[Stereotype, ...] = ()
         if kind:
             path, items = _typed(kind, items)

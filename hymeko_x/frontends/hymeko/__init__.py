@@ -18,6 +18,7 @@ from hymeko_x.frontends.hymeko.block import Block, is_written, read_written, rea
 from hymeko_x.frontends.hymeko.bodies import is_base_arc, read_body, read_fixed
 from hymeko_x.frontends.hymeko.builder import HymekoBuilder, without_implied
 from hymeko_x.frontends.hymeko.changes import change_element
+from hymeko_x.frontends.hymeko.comments import standing_comment, with_all_comments
 from hymeko_x.frontends.hymeko.extras import is_foreign, read_extra, read_foreign
 from hymeko_x.frontends.hymeko.heritage import with_heritage
 from hymeko_x.frontends.hymeko.instances import changes_in, declare_instance, frames_on_bodies, place_instance, read_instances
@@ -34,9 +35,9 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Provenance
 from hymeko_x.ir.provenance import take_provenance
 from hymeko_x.language.classes import with_classes
+from hymeko_x.language.comments import comments_in, without_comments
 from hymeko_x.language.errors import with_excerpt
 from hymeko_x.language.expansion import Change, Element, Expanded, Instance, Statement, expand
-from hymeko_x.language.markup import SECTION_COMMENT
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Comment, Field, QuotedName, is_field
@@ -74,9 +75,11 @@ def read(source: Source, report: Report) -> Reading:
             return None
 
     try:
-        expanded = expand(with_classes(parse(text, source.name), {*standard_templates(), *RESERVED}), source.name, fetch)
+        document = parse(text, source.name)
+        expanded = expand(with_classes(document, {*standard_templates(), *RESERVED}), source.name, fetch)
         builder = HymekoBuilder(reader=ValueReader(source.name, report), prototypes=expanded.prototypes, root=expanded.root)
-        return Reading(_read_expanded(expanded, builder, read_instances(builder, expanded, source.parts)))
+        found = _read_expanded(expanded, builder, read_instances(builder, expanded, source.parts))
+        return Reading(with_all_comments(found, document))
     except Refusal as refusal:
         raise with_excerpt(refusal, text, source.name) from refusal
 
@@ -155,7 +158,11 @@ def _read_root(builder: HymekoBuilder, expanded: Expanded, kinds: list[str], ins
     remaining = iter(kinds)
     for item in expanded.items:
         if isinstance(item, Element) and _is_about_the_whole(item.node):
-            place += _read_root_block(builder, item.node, place)
+            for comment in comments_in(item.node.items):
+                extra = standing_comment(comment, place)
+                builder.add_extras(ROOT, extra)
+                place += not extra.path
+            place += _read_root_block(builder, without_comments(item.node), place)
         elif isinstance(item, Element):
             place += 1 + _has_attached(next(remaining), item.node)
         elif isinstance(item, Instance):
@@ -218,8 +225,7 @@ def _loose_extra(builder: HymekoBuilder, item: ArcItem | Comment, place: int, *,
     Raises: Refusal (HX062) for such an arc in a robot, where it is a mistake.
     """
     if isinstance(item, Comment):
-        section = SECTION_COMMENT.fullmatch(item.text)
-        return Extra("comment", section[1], section[2], place) if section else Extra("comment", "", item.text, place)
+        return standing_comment(item, place)
     reader = builder.reader
     message = f"the arc to '{item.ref.dotted}' stands in no edge"
     hint = f"as one name it is written in backticks: `{item.role}{item.ref.direction}{item.ref.dotted}`" if item.role else ""

@@ -10,6 +10,7 @@ from hymeko_x.frontends.hymeko.extras import is_foreign, read_extras, read_forei
 from hymeko_x.frontends.hymeko.values import name_of
 from hymeko_x.ir.mechanism import Extra
 from hymeko_x.language.classes import IMPLIED
+from hymeko_x.language.comments import comments_in, without_comments
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, QuotedName, is_list
 
@@ -39,17 +40,22 @@ class Block:
         self.classes: tuple[str, ...] = ()
         self.is_implied = False
         self.unnamed = False
-        comments = 0
+        self.comments = 0
         for item in items:
             if isinstance(item, Field):
                 self._field(item)
             elif isinstance(item, Node):
-                self._node(item)
+                self._keep_comments(comments_in(item.items))
+                self._node(without_comments(item))
             elif isinstance(item, ArcItem):
                 self.arcs.append(item)
             elif isinstance(item, Comment):
-                self.extras.append(Extra("comment", "", item.text, comments))
-                comments += 1
+                self._keep_comments((item,))
+
+    def _keep_comments(self, comments: Iterable[Comment]) -> None:
+        for comment in comments:
+            self.extras.append(Extra("comment", "", comment.text, self.comments))
+            self.comments += 1
 
     def _node(self, item: Node) -> None:
         if is_foreign(item):
