@@ -1,28 +1,18 @@
-"""The volume of a mesh and how it is spread, by trimesh: exact for closed meshes, of the convex hull for open ones."""
+"""Meshes as solids, by trimesh: exact for closed meshes, the convex hull for open ones."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.solids import Solid
 
 if TYPE_CHECKING:
-    from hymeko_x.ir.values import Tensor, Vec3
+    from hymeko_x.ir.values import Vec3
     from hymeko_x.meshes.submesh import Submesh
 
 
-class Solid(NamedTuple):
-    """A volume in m^3 with its centre in m, and the tensor in m^5 about that centre of a body of density 1 (xx, yy, zz, xy, xz, yz).
-
-    ``is_hull`` says that it is that of the convex hull.
-    """
-
-    volume: float
-    centre: Vec3
-    tensor: Tensor
-    is_hull: bool
-
-
-def solid_of(part: Submesh, scale: Vec3 = (1.0, 1.0, 1.0), *, as_hull: bool = False) -> Solid | None:
-    """The solid that a mesh bounds, else its convex hull; None where it is flat.
+def solid_of_mesh(part: Submesh, scale: Vec3, *, as_hull: bool) -> tuple[Solid, bool] | None:
+    """The solid of density 1 that a mesh bounds, else its convex hull, and whether it is the hull; None where it is flat.
 
     A mesh bounds a solid when each edge has two triangles that go round it in opposite directions, and the volume is positive.
     """
@@ -42,5 +32,4 @@ def solid_of(part: Submesh, scale: Vec3 = (1.0, 1.0, 1.0), *, as_hull: bool = Fa
         return None
     rows = found.inertia.tolist()
     x, y, z = found.center_mass.tolist()
-    tensor = (rows[0][0], rows[1][1], rows[2][2], rows[0][1], rows[0][2], rows[1][2])
-    return Solid(float(found.mass), (x, y, z), tensor, is_hull)
+    return Solid(float(found.mass), (x, y, z), (rows[0][0], rows[1][1], rows[2][2], rows[0][1], rows[0][2], rows[1][2])), is_hull

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import native_format
-from hymeko_x.ir.parts import Body, Inertial, Mesh, MeshShape, Role
-from hymeko_x.ir.values import ZERO, add, apply, rotate_tensor, scaled
-from hymeko_x.rewrite.inertia import of_point, solid_of_primitive
+from hymeko_x.ir.parts import Body, Mesh, MeshShape, Role
+from hymeko_x.ir.solids import joined, solid_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
-    from hymeko_x.ir.values import Tensor, Vec3
-    from hymeko_x.meshes.solids import Solid
+    from hymeko_x.ir.solids import Solid
     from hymeko_x.rewrite.context import Context
 
 Source = Literal["collision", "visual", "hull"]
@@ -24,14 +22,6 @@ WATER = 1000.0
 """The density in kg/m^3 that is taken where the user gives none."""
 _SHOWN = 3
 _BY_SOURCE = {"collision": "their collision shapes", "visual": "their visual shapes", "hull": "the convex hulls of their shapes"}
-
-
-class _Part(NamedTuple):
-    """A part of a body: its volume in m^3, its centre in m, and its tensor about that in m^5, in the frame of the body."""
-
-    volume: float
-    centre: Vec3
-    tensor: Tensor
 
 
 class Solids:
@@ -43,33 +33,33 @@ class Solids:
         self.missing: list[Id] = []
         self._found: dict[Id, Solid | None] = {}
 
-    def of(self, view: ShapeView) -> _Part | None:
-        """The solid of a shape in the frame of its body; None for a plane, and for a mesh that is not there or flat."""
-        if not isinstance(view.shape.geometry, MeshShape):
-            primitive = solid_of_primitive(view.shape.geometry)
-            if primitive is None or not primitive[0] > 0.0:
-                return None
-            volume, (a, b, c) = primitive
-            tensor = rotate_tensor(view.pose.quat, (a * volume, b * volume, c * volume, 0.0, 0.0, 0.0))
-            return _Part(volume, view.pose.xyz, tensor)
-        solid = None if view.mesh is None else self._of_mesh(view.mesh)
-        return None if solid is None else _Part(solid.volume, apply(view.pose, solid.centre), rotate_tensor(view.pose.quat, solid.tensor))
+    def of(self, view: ShapeView) -> Solid | None:
+        """The solid of a shape in the frame of its body, of density 1; None for a plane, and for a mesh that is not there or flat."""
+        if isinstance(view.shape.geometry, MeshShape):
+            solid = None if view.mesh is None else self._of_mesh(view.mesh)
+        else:
+            solid = solid_of(view.shape.geometry)
+        return solid.at(view.pose) if solid is not None and solid.mass > 0.0 else None
 
     def _of_mesh(self, key: Id) -> Solid | None:
         if key not in self._found:
-            found = self._found[key] = self._measured(self.mechanism.vertex(key, Mesh))
-            if found is None:
-                self.missing.append(key)
-            elif found.is_hull and not self.as_hull:
-                self.hulls.append(key)
+            self._found[key] = self._measured(key)
         return self._found[key]
 
-    def _measured(self, mesh: Mesh) -> Solid | None:
+    def _measured(self, key: Id) -> Solid | None:
         from hymeko_x.meshes.reader import triangles_of
-        from hymeko_x.meshes.solids import solid_of
+        from hymeko_x.meshes.solids import solid_of_mesh
 
+        mesh = self.mechanism.vertex(key, Mesh)
         part = triangles_of(mesh, self.context.files)
-        return None if part is None else solid_of(part, mesh.scale, as_hull=self.as_hull)
+        found = None if part is None else solid_of_mesh(part, mesh.scale, as_hull=self.as_hull)
+        if found is None:
+            self.missing.append(key)
+            return None
+        solid, is_hull = found
+        if is_hull and not self.as_hull:
+            self.hulls.append(key)
+        return solid
 
 
 def give_inertials(mechanism: Mechanism, density: float, source: Source | None, context: Context) -> Mechanism:
@@ -104,9 +94,9 @@ def _weighed(mechanism: Mechanism, bare: list[Id], density: float, source: Sourc
     solids = Solids(mechanism, context, as_hull=source == "hull")
     found: dict[Id, Body] = {}
     for key in bare:
-        inertial = _together([part for view in _chosen(mechanism.shapes.get(key, ()), source) if (part := solids.of(view))], density)
-        if inertial is not None:
-            found[key] = Body(inertial)
+        shapes = [solid for view in _chosen(mechanism.shapes.get(key, ()), source) if (solid := solids.of(view))]
+        if shapes:
+            found[key] = Body(joined(shapes).times(density).inertial())
     _report(found, bare, solids, source, context)
     return mechanism.replace(vertices=found)
 
@@ -116,22 +106,6 @@ def _chosen(views: Iterable[ShapeView], source: Source | None) -> list[ShapeView
     unwanted = Role.COLLISION if source == "visual" else Role.VISUAL
     views = list(views)
     return [view for view in views if view.shape.role is not unwanted] or views
-
-
-def _together(parts: list[_Part], density: float) -> Inertial | None:
-    """The inertial of some solids of one density."""
-    whole = sum(part.volume for part in parts)
-    if not whole > 0.0:
-        return None
-    centre = ZERO
-    for part in parts:
-        centre = add(centre, scaled(part.centre, part.volume / whole))
-    total = [0.0] * 6
-    for part in parts:
-        arm = of_point(add(part.centre, scaled(centre, -1.0)))
-        total = [value + own + part.volume * far for value, own, far in zip(total, part.tensor, arm, strict=True)]
-    xx, yy, zz, xy, xz, yz = (density * value for value in total)
-    return Inertial(density * whole, centre, (xx, yy, zz, xy, xz, yz))
 
 
 def _report(found: dict[Id, Body], bare: list[Id], solids: Solids, source: Source | None, context: Context) -> None:

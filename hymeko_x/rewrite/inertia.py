@@ -12,15 +12,15 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import listed
 from hymeko_x.formats import native_format
 from hymeko_x.ir.notations import WITHOUT_TENSOR
-from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Inertial, Role, Sphere
-from hymeko_x.ir.values import ZERO, add, numbers_text, rotate_tensor, scaled
+from hymeko_x.ir.parts import Body, Inertial
+from hymeko_x.ir.solids import with_tensor_of
+from hymeko_x.ir.values import numbers_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
-    from hymeko_x.ir.parts import Geometry
+    from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.values import Tensor, Vec3
     from hymeko_x.rewrite.context import Context
 
@@ -260,10 +260,6 @@ def _matrix(tensor: Tensor) -> list[list[float]]:
 # ---- tensors that follow from shapes -----------------------------------------------------------------------------------
 
 
-_Solid = tuple[float, "Vec3"]
-"""The volume in m^3 of a primitive, and its principal moments in m^2 per kg of mass."""
-
-
 def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
     """A body with a mass and no tensor gets that of its shapes: of those that collide, else of those that are seen.
 
@@ -279,100 +275,15 @@ def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
         inertial = body.inertial
         if inertial is None or not inertial.mass or inertial.tensor is not None or mechanism.notation(key, WITHOUT_TENSOR):
             continue
-        unit = evenly_spread(mechanism.shapes.get(key, ()))
-        if unit is None or unit.tensor is None:
+        given = with_tensor_of(mechanism.shapes.get(key, ()), inertial)
+        if given is None:
             unsaid[key] = {**mechanism.notations.get(key, {}), WITHOUT_TENSOR.name: WITHOUT_TENSOR.write(True)}
             continue
-        xx, yy, zz, xy, xz, yz = (inertial.mass * value for value in unit.tensor)
-        com = inertial.com if any(inertial.com) else unit.com
-        changed[key] = replace(body, inertial=replace(inertial, com=com, tensor=(xx, yy, zz, xy, xz, yz)))
+        changed[key] = replace(body, inertial=given)
         message = f"{key} has a mass and no inertia tensor; that of its geometry is written"
-        if com != inertial.com:
+        if given.com != inertial.com:
             message = f"{key} has a mass, and neither a centre of mass nor an inertia tensor; those of its geometry are written"
         context.report.note(codes.REWRITTEN, message, mechanism.origin(key), element=str(key))
     if unsaid:
         mechanism = replace(mechanism, notations={**mechanism.notations, **unsaid})
     return mechanism.replace(vertices=changed)
-
-
-def evenly_spread(views: Iterable[ShapeView]) -> Inertial | None:
-    """The centre of the shapes, and the tensor in m^2 about it, in body axes, of 1 kg spread evenly over them; None without a solid.
-
-    The shapes are those that collide, else those that are seen; ``mass`` is their volume in m^3.
-    """
-    solids = [(view, solid) for view in views if (solid := solid_of_primitive(view.shape.geometry)) is not None]
-    chosen = [item for item in solids if item[0].shape.role is not Role.VISUAL] or solids
-    return _spread([(view, solid[0], solid) for view, solid in chosen])
-
-
-def inertial_of_solids(views: Iterable[ShapeView], density: float) -> Inertial | None:
-    """Mass, centre of mass and tensor of the shapes that collide, each of its own density in kg/m^3 or of the given one.
-
-    None where one of them is no primitive solid, or there is none.
-    """
-    parts = []
-    for view in views:
-        if view.shape.role is Role.VISUAL:
-            continue
-        solid = solid_of_primitive(view.shape.geometry)
-        if solid is None:
-            return None
-        parts.append((view, solid[0] * (density if view.shape.density is None else view.shape.density), solid))
-    spread = _spread(parts)
-    if spread is None or spread.mass is None or spread.tensor is None:
-        return None
-    xx, yy, zz, xy, xz, yz = (spread.mass * value for value in spread.tensor)
-    return Inertial(spread.mass, spread.com, (xx, yy, zz, xy, xz, yz))
-
-
-def _spread(parts: list[tuple[ShapeView, float, _Solid]]) -> Inertial | None:
-    """The sum of the weights, their centre, and the tensor of 1 kg spread like them; None without weight."""
-    whole = sum(weight for _, weight, _ in parts)
-    if whole <= 0.0:
-        return None
-    centre = ZERO
-    for view, share, _ in parts:
-        centre = add(centre, scaled(view.pose.xyz, share / whole))
-    total = [0.0] * 6
-    for view, share, (_, moments) in parts:
-        own = rotate_tensor(view.pose.quat, (*moments, 0.0, 0.0, 0.0))
-        arm = of_point(add(view.pose.xyz, scaled(centre, -1.0)))
-        total = [value + share / whole * (a + b) for value, a, b in zip(total, own, arm, strict=True)]
-    xx, yy, zz, xy, xz, yz = total
-    return Inertial(whole, centre, (xx, yy, zz, xy, xz, yz))
-
-
-def of_point(at: Vec3) -> Tensor:
-    """The tensor of 1 kg at a point, about the origin."""
-    x, y, z = at
-    return y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z
-
-
-def solid_of_primitive(geometry: Geometry) -> _Solid | None:
-    """The volume in m^3 of a primitive, and its principal moments in m^2 per kg; None for what is none."""
-    match geometry:
-        case Box((x, y, z)):
-            return x * y * z, ((y * y + z * z) / 12.0, (x * x + z * z) / 12.0, (x * x + y * y) / 12.0)
-        case Sphere(r):
-            return 4.0 / 3.0 * math.pi * r**3, (0.4 * r * r,) * 3
-        case Ellipsoid((a, b, c)):
-            return 4.0 / 3.0 * math.pi * a * b * c, ((b * b + c * c) / 5.0, (a * a + c * c) / 5.0, (a * a + b * b) / 5.0)
-        case Cylinder(r, length):
-            across = (3.0 * r * r + length * length) / 12.0
-            return math.pi * r * r * length, (across, across, r * r / 2.0)
-        case Capsule(r, length):
-            return _capsule(r, length)
-        case _:
-            return None
-
-
-def _capsule(r: float, length: float) -> _Solid:
-    """A cylinder between two half balls, whose own centres are 3/8 of the radius above the cylinder's ends."""
-    middle, ends = math.pi * r * r * length, 4.0 / 3.0 * math.pi * r**3
-    whole = middle + ends
-    if whole <= 0.0:
-        return 0.0, ZERO
-    along = (middle * r * r / 2.0 + ends * 0.4 * r * r) / whole
-    far = 0.4 * r * r + length * length / 4.0 + 3.0 / 8.0 * r * length
-    across = (middle * (3.0 * r * r + length * length) / 12.0 + ends * far) / whole
-    return whole, (across, across, along)

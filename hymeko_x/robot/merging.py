@@ -9,15 +9,16 @@ from msgspec.structs import replace
 from hymeko_x.ir.kinematics import below
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, pose_weight
 from hymeko_x.ir.parts import Body, Contact, Inertial
-from hymeko_x.ir.values import IDENTITY, Pose, add, apply, compose, rotate_tensor, scaled
+from hymeko_x.ir.solids import Solid, joined
+from hymeko_x.ir.values import IDENTITY, Pose, apply, compose, rotate_tensor
 from hymeko_x.robot.errors import unknown_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
-    from hymeko_x.ir.values import Tensor, Vec3
 
+_NO_TENSOR = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 Places = dict[Id, tuple[Id, Pose]]
 """By body, the body that it becomes a part of, and its pose there."""
 
@@ -77,6 +78,7 @@ def _moved_arc(arc: RobotArc, places: Places) -> RobotArc:
 
 
 def _inertials(mechanism: Mechanism, places: Places) -> dict[Id, Body]:
+    """The bodies that others become a part of, with the inertials of all of them together."""
     members: dict[Id, list[Inertial]] = {}
     for key, (top, pose) in places.items():
         inertial = mechanism.vertex(key, Body).inertial
@@ -96,30 +98,7 @@ def _seen_from(inertial: Inertial, pose: Pose) -> Inertial:
 
 
 def _sum(parts: list[Inertial]) -> Inertial:
-    """The inertial of several in the same frame. Source: the parallel axis theorem."""
+    """The inertial of several in the same frame; a mass or a tensor that one of them lacks counts as zero."""
     if len(parts) == 1:
         return parts[0]
-    mass = sum(part.mass or 0.0 for part in parts)
-    moment: Vec3 = (0.0, 0.0, 0.0)
-    for part in parts:
-        moment = add(moment, scaled(part.com, part.mass or 0.0))
-    com = scaled(moment, 1.0 / mass) if mass else parts[0].com
-    tensor = [0.0] * 6
-    for part in parts:
-        about = _about(part, com)
-        tensor = [a + b for a, b in zip(tensor, about, strict=True)]
-    return Inertial(mass, com, (tensor[0], tensor[1], tensor[2], tensor[3], tensor[4], tensor[5]))
-
-
-def _about(part: Inertial, point: Vec3) -> Tensor:
-    m = part.mass or 0.0
-    x, y, z = (a - b for a, b in zip(part.com, point, strict=True))
-    xx, yy, zz, xy, xz, yz = part.tensor or (0.0,) * 6
-    return (
-        xx + m * (y * y + z * z),
-        yy + m * (x * x + z * z),
-        zz + m * (x * x + y * y),
-        xy - m * x * y,
-        xz - m * x * z,
-        yz - m * y * z,
-    )
+    return joined([Solid(part.mass or 0.0, part.com, part.tensor or _NO_TENSOR) for part in parts]).inertial()

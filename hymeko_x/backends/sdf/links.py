@@ -12,8 +12,8 @@ from hymeko_x.formats.sdf.notations import WrittenPose
 from hymeko_x.formats.sdf.values import NUMBER, TENSOR, BadText, Field, read_pose
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Inertial, Light
+from hymeko_x.ir.solids import solid_of_colliders
 from hymeko_x.ir.values import IDENTITY, Pose, numbers_text, rotate_tensor, rpy_of
-from hymeko_x.rewrite.inertia import inertial_of_solids
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
@@ -58,8 +58,8 @@ def _is_computed(key: Id, sheet: SdfSheet) -> bool:
     inertial = sheet.mechanism.vertex(key, Body).inertial
     if not sheet.mechanism.notation(key, notations.AUTO):
         return False
-    found = inertial_of_solids(sheet.mechanism.shapes.get(key, ()), words.DENSITY)
-    if found is None or inertial is None or not found.mass or inertial.mass is None or found.tensor is None or inertial.tensor is None:
+    found = solid_of_colliders(sheet.mechanism.shapes.get(key, ()), words.DENSITY)
+    if found is None or inertial is None or inertial.mass is None or inertial.tensor is None:
         return inertial is None
     scale = inertial.mass / found.mass
     return all(abs(a * scale - b) <= 1e-9 * abs(b) + 1e-15 for a, b in zip(found.tensor, inertial.tensor, strict=True))

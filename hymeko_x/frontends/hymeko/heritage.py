@@ -8,7 +8,8 @@ from msgspec.structs import replace
 
 from hymeko_x import formats
 from hymeko_x.ir.parts import Body, Shape
-from hymeko_x.rewrite.inertia import evenly_spread, moving_bodies, welded_to
+from hymeko_x.ir.solids import with_tensor_of
+from hymeko_x.rewrite.inertia import moving_bodies, welded_to
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -63,11 +64,9 @@ def _explicit(whole: Mechanism, imported: set[Id]) -> Mechanism | None:
         inertial = body.inertial
         if inertial is not None and inertial.mass and inertial.tensor is not None:
             continue
-        unit = evenly_spread(whole.shapes.get(key, ()))
-        if inertial is not None and inertial.mass and unit is not None and unit.tensor is not None:
-            xx, yy, zz, xy, xz, yz = (inertial.mass * value for value in unit.tensor)
-            com = inertial.com if any(inertial.com) else unit.com
-            vertices[key] = replace(body, inertial=replace(inertial, com=com, tensor=(xx, yy, zz, xy, xz, yz)))
+        given = with_tensor_of(whole.shapes.get(key, ()), inertial) if inertial is not None and inertial.mass else None
+        if given is not None:
+            vertices[key] = replace(body, inertial=given)
         elif key in moving or inertial is not None:
             return None
         else:

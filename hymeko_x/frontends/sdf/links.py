@@ -14,8 +14,8 @@ from hymeko_x.frontends.sdf.sensors import read_light, read_link_sensor
 from hymeko_x.frontends.sdf.shapes import read_shape
 from hymeko_x.ir.mechanism import ShapeView, pose_weight
 from hymeko_x.ir.parts import Body, Inertial, InertialWritten, Shape
+from hymeko_x.ir.solids import solid_of_colliders
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, rotate_tensor
-from hymeko_x.rewrite.inertia import inertial_of_solids
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
@@ -87,18 +87,15 @@ def _inertial_of_collisions(link: Node, key: Id, density: float, builder: SdfBui
         for shape in (child.owner for child in link.children if child.tag == "collision")
         if shape is not None and isinstance((edge := builder.edges[shape]).data, Shape)
     ]
-    found = inertial_of_solids(views, density)
-    if found is None or found.mass is None or found.tensor is None:
+    found = solid_of_colliders(views, density)
+    if found is None:
         return None
     if not all(map(math.isfinite, (found.mass, *found.com, *found.tensor))):
         builder.error(codes.BAD_NUMBER, link, f"{link.subject}: the inertial of its collisions is not finite; it is left unspecified")
         return None
     node = next(child for child in link.children if child.tag == "inertial")
     mass = read_numbers(next((child.text or "" for child in node.children if child.tag == "mass"), ""))
-    if not mass:
-        return found
-    xx, yy, zz, xy, xz, yz = (value * mass[0] / found.mass for value in found.tensor)
-    return Inertial(mass[0], found.com, (xx, yy, zz, xy, xz, yz))
+    return (found.times(mass[0] / found.mass) if mass else found).inertial()
 
 
 def _read_pose(inertial: Node, key: Id, builder: SdfBuilder) -> Pose:

@@ -8,15 +8,15 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.materials import bound_to
 from hymeko_x.frontends.usd.transforms import numbers_of, rotation_of
-from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Inertial, InertialWritten, MeshShape, Role, Shape, Sphere
-from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, apply, rotate_tensor
+from hymeko_x.ir.parts import Body, Inertial, InertialWritten, MeshShape, Role, Shape
+from hymeko_x.ir.solids import Solid, joined, solid_of
+from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, rotate_tensor
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.ir.parts import Geometry
 
 BODY = "PhysicsRigidBodyAPI"
 MASS = "PhysicsMassAPI"
@@ -135,7 +134,7 @@ def _solid(read: ReadShape, density: float, builder: UsdBuilder) -> Solid | None
     prim = read.prim
     if read.shape.role is Role.VISUAL:
         return None
-    unit = solid_of(read.shape.geometry, read.pose, _points(read))
+    unit = _of_shape(read)
     if unit is None:
         return None
     mass = _plain(prim, "physics:mass") * builder.scene.kilograms
@@ -144,16 +143,6 @@ def _solid(read: ReadShape, density: float, builder: UsdBuilder) -> Solid | None
     per_volume = builder.scene.kilograms / builder.scene.metres**3
     own = _plain(prim, "physics:density") * per_volume
     return unit.times(own or density or _material_density(prim, builder) * per_volume or _DENSITY)
-
-
-def _points(read: ReadShape) -> NDArray[Any] | None:
-    """The points of a mesh (n, 3) in the shape's frame; None for other shapes."""
-    if read.scale is None:
-        return None
-    import numpy as np
-
-    points = np.asarray(read.prim.value("points"), dtype=np.float64)
-    return points * np.asarray(read.scale, dtype=np.float64)
 
 
 def _material_density(prim: Prim, builder: UsdBuilder) -> float:
@@ -179,73 +168,22 @@ def _completed(stated: Inertial, solid: Solid) -> Inertial:
     com = stated.com if any(stated.com) else solid.com
     if stated.tensor is not None:
         return replace(stated, mass=mass, com=com)
-    return Inertial(mass, com, _times(solid.tensor, mass / solid.mass if solid.mass else 1.0))
+    return Inertial(mass, com, solid.times(mass / solid.mass).tensor if solid.mass else solid.tensor)
 
 
 # ---- solids of density 1 -------------------------------------------------------------------------------------------------------------
 
 
-class Solid(Struct, frozen=True):
-    """Mass in kg, centre of mass in m and tensor in kg m^2 about it, in the axes of the body."""
-
-    mass: float
-    com: Vec3
-    tensor: Tensor
-
-    def times(self, factor: float) -> Solid:
-        """The same solid with this multiple of its density."""
-        return Solid(self.mass * factor, self.com, _times(self.tensor, factor))
+def _of_shape(read: ReadShape) -> Solid | None:
+    """A shape of density 1 at its pose in the body; a mesh counts as its convex hull. None without a volume."""
+    solid = _hull(_points(read)) if isinstance(read.shape.geometry, MeshShape) else solid_of(read.shape.geometry)
+    return None if solid is None else solid.at(read.pose)
 
 
-def joined(solids: list[Solid]) -> Solid:
-    """Several solids as one."""
-    mass = sum(solid.mass for solid in solids)
-    if mass <= 0.0:
-        return Solid(0.0, ZERO, (0.0,) * 6)
-    x, y, z = (sum(solid.mass * solid.com[i] for solid in solids) / mass for i in range(3))
-    total = [0.0] * 6
-    for solid in solids:
-        offset = _point_mass(solid.mass, (solid.com[0] - x, solid.com[1] - y, solid.com[2] - z))
-        total = [a + b + c for a, b, c in zip(total, solid.tensor, offset, strict=True)]
-    return Solid(mass, (x, y, z), (total[0], total[1], total[2], total[3], total[4], total[5]))
-
-
-def solid_of(geometry: Geometry, pose: Pose, points: NDArray[Any] | None) -> Solid | None:
-    """A geometry of density 1 at its pose in the body; a mesh (its points, n x 3) counts as its convex hull. None: no volume."""
-    if isinstance(geometry, MeshShape):
-        solid = _hull(points) if points is not None else None
-    else:
-        moments = _moments(geometry)
-        solid = None if moments is None else Solid(moments[0], ZERO, (*moments[1:], 0.0, 0.0, 0.0))
-    return None if solid is None else Solid(solid.mass, apply(pose, solid.com), rotate_tensor(pose.quat, solid.tensor))
-
-
-def _moments(geometry: Geometry) -> tuple[float, float, float, float] | None:
-    """Volume and principal moments of a centred primitive."""
-    match geometry:
-        case Box((x, y, z)):
-            v = x * y * z
-            return v, v * (y * y + z * z) / 12, v * (x * x + z * z) / 12, v * (x * x + y * y) / 12
-        case Sphere(r):
-            v = 4 / 3 * math.pi * r**3
-            return v, 0.4 * v * r * r, 0.4 * v * r * r, 0.4 * v * r * r
-        case Ellipsoid((a, b, c)):
-            v = 4 / 3 * math.pi * a * b * c
-            return v, v * (b * b + c * c) / 5, v * (a * a + c * c) / 5, v * (a * a + b * b) / 5
-        case Cylinder(r, h):
-            v = math.pi * r * r * h
-            across = v * (3 * r * r + h * h) / 12
-            return v, across, across, v * r * r / 2
-        case Capsule(r, h):
-            middle, caps = math.pi * r * r * h, 4 / 3 * math.pi * r**3
-            across = middle * (3 * r * r + h * h) / 12 + caps * (0.4 * r * r + h * h / 4 + 3 * h * r / 8)
-            return middle + caps, across, across, middle * r * r / 2 + caps * 0.4 * r * r
-        case _:
-            return None
-
-
-def _hull(points: NDArray[Any]) -> Solid | None:
+def _hull(points: NDArray[Any] | None) -> Solid | None:
     """The convex hull of points as a sum of tetrahedra from its middle. None where it is flat."""
+    if points is None:
+        return None
     import numpy as np
     from scipy.spatial import ConvexHull, QhullError
 
@@ -268,11 +206,11 @@ def _hull(points: NDArray[Any]) -> Solid | None:
     return Solid(total, (x, y, z), (*tensor.diagonal().tolist(), float(tensor[0, 1]), float(tensor[0, 2]), float(tensor[1, 2])))
 
 
-def _point_mass(mass: float, at: Vec3) -> Tensor:
-    x, y, z = at
-    return (mass * (y * y + z * z), mass * (x * x + z * z), mass * (x * x + y * y), -mass * x * y, -mass * x * z, -mass * y * z)
+def _points(read: ReadShape) -> NDArray[Any] | None:
+    """The points of a mesh (n, 3) in the shape's frame; None for other shapes."""
+    if read.scale is None:
+        return None
+    import numpy as np
 
-
-def _times(tensor: Tensor, factor: float) -> Tensor:
-    xx, yy, zz, xy, xz, yz = tensor
-    return (xx * factor, yy * factor, zz * factor, xy * factor, xz * factor, yz * factor)
+    points = np.asarray(read.prim.value("points"), dtype=np.float64)
+    return points * np.asarray(read.scale, dtype=np.float64)

@@ -17,8 +17,8 @@ from hymeko_x.ir import tendons as roles
 from hymeko_x.ir.mechanism import WORLD as WORLD_ID
 from hymeko_x.ir.mechanism import Id, JointView, Mechanism, ShapeView, numbers_weight, pose_weight
 from hymeko_x.ir.notations import UNNAMED
+from hymeko_x.ir.solids import evenly_spread
 from hymeko_x.rewrite.context import Options
-from hymeko_x.rewrite.inertia import evenly_spread
 from hymeko_x.rewrite.transmissions import commanded
 from hymeko_x.source import Source
 from hymeko_x.verify import model as m
