@@ -77,12 +77,21 @@ def test_the_printer_makes_one_edge_of_them() -> None:
     printed = hx.dumps(hx.loads(GRIPPER, "hymeko").mechanism, "hymeko")
     arcs = "[0 0.02 0.06] + palm - left [0 -0.02 0.06] - right { ratio -1 } [[0.02 0 0.06] [0 0 90]] - thumb { ratio 0.5 } - nail"
     assert arcs in " ".join(printed.split())
+    assert "@covers : fixed { [0 0 -1] + palm - case [0 1 0] - lid }" in printed
     assert printed.index("move together") < printed.index("@fingers") < printed.index("behind") < printed.index("case")
 
 
 def test_a_joint_that_something_else_refers_to_stands_by_itself() -> None:
     robot = read(f"r : robot {{ a {BODY} b {BODY} c {BODY} @j {{ + a - b - c }} m : motor {{ - j_2 }} }}")
     assert "@j_2 { + a - c mimic - j }" in hx.dumps(robot, "hymeko")
+
+
+def test_fixed_joints_that_something_tells_apart_stand_by_themselves() -> None:
+    edge = "@j : fixed {{ + a - b {} - c }}".format
+    assert "@j_2" not in hx.dumps(read(f"r : robot {{ a {{}} b {{}} c {{}} {edge('')} }}"), "hymeko")
+    assert "@j_2" in hx.dumps(read("r : robot { a {} b {} c {} @j : fixed { + a - b } x {} @j_2 : fixed { + a - c } }"), "hymeko")
+    assert "@j_2" in hx.dumps(read("r : robot { a {} b {} c {} @j : fixed { + a - b } @j_2 : fixed { + b - c } }"), "hymeko")
+    assert "@j_2" in hx.dumps(read('r : robot { a {} b {} c {} @j : fixed { + a - b } @j_2 : fixed { + a - c urdf "<x/>" } }'), "hymeko")
 
 
 def test_the_published_arrows_and_roles() -> None:
@@ -113,22 +122,24 @@ FACTORS = st.floats(0.01, 100).flatmap(lambda number: st.sampled_from([number, -
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(
-    st.sampled_from(["revolute", "prismatic", "screw"]), st.lists(st.tuples(POSES, FACTORS, st.booleans()), min_size=1, max_size=4), POSES
+    st.sampled_from(["revolute", "prismatic", "screw", "fixed"]),
+    st.lists(st.tuples(POSES, FACTORS, st.booleans()), min_size=1, max_size=4),
+    POSES,
 )
 def test_any_edge_comes_back(kind: str, others: list[tuple[Pose, float, bool]], shared: Pose) -> None:
     def pose(value: Pose) -> str:
         return f"[[{' '.join(map(repr, value.xyz))}] [{' '.join(map(repr, value.quat))}]]"
 
     names = [f"c{number}" for number in range(len(others))]
+    is_fixed = kind == "fixed"
     arcs = [
-        f"{pose(place)} {'at' if framed else ''} - {name} {{ ratio {ratio!r} }}"
+        f"{pose(place)} {'at' if framed else ''} - {name}" + ("" if is_fixed else f" {{ ratio {ratio!r} }}")
         for name, (place, ratio, framed) in zip(names, others, strict=True)
     ]
     bodies = " ".join(f"{name} {{}}" for name in ("a", "b", *names))
-    robot = read(
-        f"r : robot {{ {bodies} @j : {kind} {{ {pose(shared)} + a - b, {' '.join(arcs)} axis [0 3 4] limit [-0.5 0.25] ref 0.1 }} }}"
-    )
-    assert [ratio for _, (_, ratio) in coefficients(robot).values()] == [ratio for _, ratio, _ in others]
+    motion = "" if is_fixed else "axis [0 3 4] limit [-0.5 0.25] ref 0.1"
+    robot = read(f"r : robot {{ {bodies} @j : {kind} {{ {pose(shared)} + a - b, {' '.join(arcs)} {motion} }} }}")
+    assert [ratio for _, (_, ratio) in coefficients(robot).values()] == [ratio for _, ratio, _ in others if not is_fixed]
     for number, (place, _, framed) in enumerate(others, 2):
         view = robot.joints[Id("joint", f"j_{number}")]
         assert (view.parent_pose, view.child_pose) == ((shared, place) if framed else (place, IDENTITY))
@@ -137,6 +148,7 @@ def test_any_edge_comes_back(kind: str, others: list[tuple[Pose, float, bool]], 
 
 REFUSED = {
     "@j { + a - b - c { ratio 0 } }": "a ratio of 0 would not move 'c'",
+    "@j : fixed { + a - b - c { ratio 2 } }": "'j' holds its children without motion, and a 'ratio' needs one",
     "@j { + a - b - c { mass 1 } }": "the block of the arc to 'c' holds a 'ratio' alone",
     "@j { + a - b { ratio 2 } - c }": "the first child of 'j' moves by the joint's own coordinate; 'ratio' is for the others",
     "@j : ball { + a - b - c }": "'j' has several children, and they can share one angle or one length, not a motion of several numbers",

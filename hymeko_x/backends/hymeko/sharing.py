@@ -20,17 +20,18 @@ def shared_joints(mechanism: Mechanism, mimics: Mapping[Id, tuple[RobotArc, ...]
     """The joints in whose edge the children of others stand, with those others: named after it, behind it, and exactly following it."""
     found: dict[Id, tuple[Id, ...]] = {}
     following = dict(zip(mechanism.layout, mechanism.layout[1:], strict=False))
-    for coupling in mimics:
-        leader = Id("joint", coupling.name.removesuffix("_2"))
-        if leader.name != coupling.name and leader in mechanism.joints and leader not in found:
+    for second in mechanism.joints:
+        leader = Id("joint", second.name.removesuffix("_2"))
+        if leader != second and leader in mechanism.joints:
             followers = tuple(_followers(mechanism, mimics, leader, following))
             found.update({leader: followers} if followers else {})
     return found
 
 
 def ratio_of(mimics: Mapping[Id, tuple[RobotArc, ...]], follower: Id) -> float:
-    """The factor by which a joint follows its only leader."""
-    return numbers_weight(mimics[Id("coupling", follower.name)][0])[1]
+    """The factor by which a joint follows its only leader; 1 for a fixed joint, which has nothing to follow."""
+    leaders = mimics.get(Id("coupling", follower.name))
+    return numbers_weight(leaders[0])[1] if leaders else 1.0
 
 
 def _followers(mechanism: Mechanism, mimics: Mapping[Id, tuple[RobotArc, ...]], leader: Id, following: Mapping[Id, Id]) -> Iterator[Id]:
@@ -43,7 +44,9 @@ def _followers(mechanism: Mechanism, mimics: Mapping[Id, tuple[RobotArc, ...]], 
 
 
 def _follows(mechanism: Mechanism, leaders: tuple[RobotArc, ...], leader: Id) -> bool:
-    """Whether a joint follows this one alone, by a factor."""
+    """Whether a joint follows this one alone, by a factor; of fixed joints, whether there is nothing to follow."""
+    if not mechanism.joints[leader].joint.dofs:
+        return not leaders
     if len(leaders) != 1 or leaders[0].target != leader:
         return False
     coefficients = numbers_weight(leaders[0])
@@ -53,11 +56,12 @@ def _follows(mechanism: Mechanism, leaders: tuple[RobotArc, ...], leader: Id) ->
 def _is_alike(mechanism: Mechanism, mimics: Mapping[Id, tuple[RobotArc, ...]], leader: Id, key: Id) -> bool:
     """Whether the edge of the first joint says everything about the other one but its child, its pose and its ratio."""
     first, other = mechanism.joints[leader], mechanism.joints[key]
-    if key in mechanism.extras or key in mechanism.notations or len(mechanism.graph.incidence.get(key, ())) != 1:
-        return False
-    if mechanism.stereotypes.get(key) != mechanism.stereotypes.get(leader) or first.parent != other.parent or len(first.joint.dofs) != 1:
+    dofs = first.joint.dofs
+    if key in mechanism.extras or key in mechanism.notations or len(mechanism.graph.incidence.get(key, ())) != len(dofs):
+        return False  # a coupling is an edge at the joint
+    if mechanism.stereotypes.get(key) != mechanism.stereotypes.get(leader) or first.parent != other.parent or len(dofs) > 1:
         return False
     if not identical(other.child_pose, IDENTITY) and not identical(other.parent_pose, first.parent_pose):
         return False
-    expected = parts.Joint((follower_dof(first.joint.dofs[0], ratio_of(mimics, key)),))
-    return identical(expected, other.joint)
+    expected = tuple(follower_dof(dof, ratio_of(mimics, key)) for dof in dofs)
+    return identical(parts.Joint(expected), other.joint)

@@ -129,14 +129,16 @@ def _ratio(arc: ArcItem, reader: ValueReader) -> float:
 def follow(builder: HymekoBuilder, key: Id, leader: ArcItem, dofs: tuple[parts.Dof, ...], scope: Scope) -> tuple[parts.Dof, ...]:
     """The dofs of a joint that follows another one; the coupling of the two is added.
 
-    Raises: Refusal (HX062) for a joint whose motion is more than one number.
+    Raises: Refusal (HX062) for a joint whose motion is more than one number, and for a ratio where there is no motion.
     """
+    ratio = builder.reader.numbers(leader.weight, "", leader, 1)[0]
+    if not dofs and ratio != 1.0:
+        raise builder.reader.refuse(leader, f"'{leader.ref.dotted}' holds its children without motion, and a '{RATIO}' needs one")
     if not dofs:
         return dofs
     if len(dofs) > 1 or dofs[0].kind not in _KINDS:
         message = f"'{leader.ref.dotted}' has several children, and they can share one angle or one length, not a motion of several numbers"
         raise builder.reader.refuse(leader, message, hint="give each child a joint of its own")
-    ratio = builder.reader.numbers(leader.weight, "", leader, 1)[0]
     target = builder.target(leader.ref, scope, ("joint",), leader)
     builder.edges[builder.reserve("coupling", key.name, leader)] = coupling_edge(key, ((target, (0.0, ratio)),))
     return (follower_dof(dofs[0], ratio),)
