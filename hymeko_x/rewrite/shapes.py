@@ -193,16 +193,18 @@ _RINGS = 12
 Piece = tuple["Geometry", Pose]
 
 
-def split_shared_shapes(mechanism: Mechanism, _context: Context) -> Mechanism:
-    """A shape that is seen and collides becomes a visual and a collision."""
+def split_shared_shapes(mechanism: Mechanism, _context: Context, *, ending: str = "") -> Mechanism:
+    """A shape that is seen and collides becomes a visual and a collision, whose name has the ending."""
     shared = [view for view in mechanism.every_shape() if view.shape.role is Role.BOTH]
     if not shared:
         return mechanism
     names = names_in_use(mechanism)
     edges: dict[Id, RobotEdge] = {}
     for view in shared:
-        for key, role in ((view.id, Role.VISUAL), (names.take("shape", f"{view.body.name}/collision"), Role.COLLISION)):
-            edges[key] = Edge(_shape_as(view.shape, view.shape.geometry, role), mechanism.graph.edges[view.id].arcs)
+        arcs, twin = mechanism.graph.edges[view.id].arcs, names.take("shape", f"{view.body.name}/collision")
+        collision = _shape_as(view.shape, view.shape.geometry, Role.COLLISION)
+        edges[view.id] = Edge(_shape_as(view.shape, view.shape.geometry, Role.VISUAL), arcs)
+        edges[twin] = Edge(replace(collision, name=view.shape.name and view.shape.name + ending), arcs)
     return mechanism.replace(edges=edges)
 
 

@@ -48,7 +48,7 @@ def updated(folder: Path, name: str, *changes: tuple[str, str]) -> tuple[list[st
         ("r.urdf", '"shin"', "shape 'leg/visual' name: 'shin' -> 'other'"),
     ],
 )
-@pytest.mark.unread("HX023", "HX101")
+@pytest.mark.unread("HX101")
 def test_a_new_name_of_what_only_the_converted_file_has_is_reported(name: str, old: str, words: str, tmp_path: Path) -> None:
     new = '"other"' if old.startswith('"') else "other"
     edits, warnings = updated(tmp_path, name, (old, new))

@@ -351,7 +351,6 @@ HYMEKO_OF_UPPER = HYMEKO.replace("  link :", "  upper :").replace("- link", "- u
 
 @pytest.mark.parametrize("target", ADDED)
 @pytest.mark.parametrize(("source", "text"), [("urdf", ARM), ("sdf", SDF), ("hymeko", HYMEKO_OF_UPPER), ("usd", "")])
-@pytest.mark.unread("HX023")
 def test_after_an_update_with_an_addition_there_is_nothing_to_update(source: str, text: str, target: str, tmp_path: Path) -> None:
     if source == target:
         pytest.skip("the same format")

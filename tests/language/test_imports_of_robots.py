@@ -165,7 +165,6 @@ def test_the_station_of_the_reference_has_two_arms_with_hands(here: Path) -> Non
 
 
 @pytest.mark.parametrize("suffix", ["urdf", "xml", "usda", "sdf", "hymeko"])
-@pytest.mark.unread("HX023")
 def test_a_text_that_imports_is_verified_against_what_it_becomes(here: Path, suffix: str) -> None:
     (here / "scene.hymeko").write_text("""import "arm.xml" as arm import "claw.urdf" as claw
     r : robot { table { mass 9 shape { box [1 1 0.1] } } @stand : fixed { + world - table }

@@ -52,7 +52,6 @@ MUJOCO = """<mujoco model="scene"><worldbody><light name="sun" pos="0 0 3"/><geo
     <geom type="ellipsoid" size=".1 .2 .3"/></body></body></worldbody></mujoco>"""
 
 
-@pytest.mark.unread("HX023")
 def test_a_scene_with_lights_becomes_a_world(tmp_path: Path) -> None:
     (tmp_path / "scene.xml").write_text(MUJOCO, "utf-8")
     hx.convert(str(tmp_path / "scene.xml"), str(tmp_path / "scene.sdf"), keep="inside")

@@ -58,7 +58,6 @@ def test_a_plane_for_contact_beside_many_shapes_is_read_by_drake() -> None:
     assert [(shape.kind, shape.role.value, shape.name) for shape in shapes[-2:]] == [("box", "collision", "c"), ("plane", "collision", "c")]
 
 
-@pytest.mark.unread("HX023")
 def test_a_plane_with_friction_is_compared_like_any_other(tmp_path: Path) -> None:
     floor = '<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1" friction="0.7 0.01 0.001"/>'
     (tmp_path / "r.xml").write_text(f"{floor}<body name='b'><freejoint/><geom size='1'/></body></worldbody></mujoco>")

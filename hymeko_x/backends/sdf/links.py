@@ -38,12 +38,11 @@ def link_tag(key: Id, scope: str, sheet: SdfSheet) -> Tag:
     if not computed:
         _add_inertial(tag, key, sheet)
     counts: dict[str, int] = {}
-    names: set[tuple[str, str]] = set()
     for name, role in words.ROLES.items():
         for view in sheet.mechanism.shapes.get(key, ()):
             if view.shape.role is role:
                 counts[name] = counts.get(name, 0) + 1
-                tag.children.append(shape_tag(view, name, counts[name], scope, names, sheet))
+                tag.children.append(shape_tag(view, name, counts[name], scope, sheet))
     for mount in sheet.mechanism.mounts.get(key, ()):
         if isinstance(sheet.mechanism.graph.vertices.get(mount.thing), Light):
             tag.children.append(light_tag(mount, scope, key, sheet))

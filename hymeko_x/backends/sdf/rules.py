@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
@@ -9,12 +10,11 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.backends.sdf.gazebo import obey_gazebo_fragments
 from hymeko_x.backends.sdf.loops import close_loops_by_joints
-from hymeko_x.backends.sdf.nesting import nesting_of
+from hymeko_x.backends.sdf.names import make_names_unique_in_models, make_names_unique_on_links
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge
-from hymeko_x.ir.names import free_name, names_in_use, rename
-from hymeko_x.ir.notations import UNNAMED
+from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Body, Dof, DofKind, Frame, Joint, Light, Mount, Shape
 from hymeko_x.ir.values import ZERO, Pose, compose, quat_about, scaled
 from hymeko_x.rewrite.chains import chain_dofs
@@ -108,43 +108,6 @@ def _uncrossed(dof: Dof) -> Dof:
     return replace(dof, limits=replace(dof.limits, lower=None, upper=None)) if crossed else dof
 
 
-# ---- names -------------------------------------------------------------------------------------------------------------------
-
-
-def make_names_unique_in_models(mechanism: Mechanism, context: Context) -> Mechanism:
-    """Links, frames and joints of a model have different names; ``::`` only stands between a model and what is in it."""
-    renamed: dict[Id, Id] = {}
-    nesting = nesting_of(mechanism)
-    taken = {scope.removesuffix(words.SCOPE) for scope in nesting.models}
-    unwritten = _unwritten(mechanism) | {*nesting.models.values()}
-    order = ("body", "joint", "loop", "frame")
-    named = [key for key in (*mechanism.graph.vertices, *mechanism.graph.edges) if key.kind in order]
-    for key in sorted(named, key=lambda key: order.index(key.kind)):
-        if key in unwritten:
-            continue
-        scope = nesting.scope_of(key)
-        own = key.name.removeprefix(scope).replace(words.SCOPE, "_")
-        if (own.startswith("__") and own.endswith("__")) or own == words.WORLD_FRAME:
-            own = f"{key.kind}_{own.strip('_')}"
-        wanted = scope + own
-        name = free_name(wanted if wanted not in taken else f"{wanted}_{key.kind}", taken.__contains__, "_")
-        taken.add(name)
-        if name != key.name:
-            renamed[key] = Id(key.kind, name)
-            message = f"{key} is written as '{name}': names are unique in a model, and '::', '__' and 'world' have a meaning"
-            context.report.note(codes.RENAMED, message, mechanism.origin(key), element=str(renamed[key]))
-    return rename(mechanism, renamed)
-
-
-def _unwritten(mechanism: Mechanism) -> frozenset[Id]:
-    """The joints to the world that stay without a name in the file: those of bases that float, or of a robot in which nothing moves."""
-    views = mechanism.joints.values()
-    nameless = [view for view in views if view.parent == WORLD and mechanism.notation(view.id, UNNAMED) is not None]
-    free = [view.id for view in views if view.parent == WORLD and [dof.kind for dof in view.joint.dofs] == [DofKind.FREE]]
-    stands = not any(view.joint.dofs for view in views) and all(view in nameless for view in views if view.parent == WORLD)
-    return frozenset([*free, *(view.id for view in nameless if stands)])
-
-
 # ---- the world ---------------------------------------------------------------------------------------------------------------
 
 
@@ -188,11 +151,12 @@ RULES: tuple[Rule, ...] = (
     put_world_geometry_on_a_link,
     unless_from_sdf(give_every_body_mass),
     prefer_own_colours,
-    split_shared_shapes,
+    partial(split_shared_shapes, ending="_collision"),
     unless_from_sdf(obey_gazebo_fragments),
     part_meshes_by_looks,
     unless_from_sdf(make_sizes_positive),
-    unless_from_sdf(make_names_unique_in_models),
+    make_names_unique_in_models,
+    make_names_unique_on_links,
     drop_unused_assets,
     make_names_usable,  # once more, for what the rules have added
 )

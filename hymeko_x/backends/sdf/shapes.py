@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import materials
 from hymeko_x.formats.sdf.values import COLOUR, NUMBER, PAIR, TEXT, VECTOR, BadText, Field
-from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Material, Mesh, MeshShape, NoShape, Plane, Role, Sphere
 from hymeko_x.ir.values import Pose, compose, inverse, quat_from_z, unit
 from hymeko_x.xml.printing import Tag
@@ -23,12 +22,9 @@ _MISSING = object()
 """No value equals it: what has no default is always written."""
 
 
-def shape_tag(view: ShapeView, name: str, number: int, scope: str, names: set[tuple[str, str]], sheet: SdfSheet) -> Tag:
-    """The n-th <visual> or <collision> of a link; ``names`` are those that the link has already."""
-    wanted = words.shape_name(name, number) if view.shape.name is None else view.shape.name
-    own = wanted if sheet.from_sdf else free_name(wanted or name, lambda text: (name, text) in names, "_")
-    names.add((name, own))
-    tag = Tag(name, {"name": own})
+def shape_tag(view: ShapeView, name: str, number: int, scope: str, sheet: SdfSheet) -> Tag:
+    """The n-th <visual> or <collision> of a link."""
+    tag = Tag(name, {"name": words.shape_name(name, number) if view.shape.name is None else view.shape.name})
     texts = sheet.written(view.id)
     pose, normal = _pose_of(view, texts)
     sheet.add_pose(tag, view.id, scope, view.body, pose=pose)

@@ -52,6 +52,9 @@ MODEL = Notation("sdf.model", _numbers, _pose_of)
 IMPLIED = flag("sdf.implied")
 """Joint: not in the file; a model without <static> floats, one with it stands."""
 
+SHARED = flag("sdf.name", "shared")
+"""Any element: another one beside it has the same name in the file, which libsdformat refuses; both keep it."""
+
 
 class WrittenPose(Struct, frozen=True):
     """A <pose> as its author wrote it: its attributes in the order ``relative_to``, ``rotation_format``, ``degrees``, and its text."""

@@ -103,7 +103,7 @@ def _take_world(root: Node, report: Report) -> Node | None:
 def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBuilder) -> str:
     """Everything in the world, or in the model of the file. Returns the name of the mechanism."""
     place = root if world is None else world
-    check_models(place, builder.report)
+    shared = check_models(place, builder.report)
     tops = list(place.take_children("model"))
     named = None if world is None else world.take("name") or "default"
     if named is not None:
@@ -133,6 +133,9 @@ def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBui
     hold_bases(models, builder, in_world=world is not None)
     for node in place.take_children("light"):
         read_light(node, WORLD, around, builder)
+    for node in shared:
+        if node.owner is not None:
+            builder.note(node.owner, notations.SHARED, True)
     if not models:
         builder.report.error(codes.MISSING_PART, "the file has no model; the result has no bodies", root.origin)
     own = tops[0].take("name") if is_alone else named

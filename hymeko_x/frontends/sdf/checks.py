@@ -17,8 +17,12 @@ _RENAMED = ("link", "joint", "frame", "model")
 """Elements that get another name where one of their own kind has it, which their readers report."""
 
 
-def check_models(place: Node, report: Report) -> None:
-    """Report several models without a world around them, models without links, and names that the elements in one element share."""
+def check_models(place: Node, report: Report) -> list[Node]:
+    """Report several models without a world around them, models without links, and names that the elements in one element share.
+
+    Returns the elements that share theirs, and keep it.
+    """
+    shared: list[Node] = []
     tops = [child for child in place.children if child.tag == "model"]
     if place.tag == "sdf" and len(tops) > 1:
         message = f"the file has {len(tops)} models and no <world> around them; libsdformat reads the first one alone"
@@ -26,10 +30,11 @@ def check_models(place: Node, report: Report) -> None:
     stack = [place]
     while stack:
         node = stack.pop()
-        _check_names(node, report)
+        shared += _check_names(node, report)
         if node.tag == "model":
             _check_links(node, report)
         stack += [child for child in reversed(node.children) if child.tag in ("model", "link")]
+    return shared
 
 
 def _check_links(node: Node, report: Report) -> None:
@@ -39,13 +44,16 @@ def _check_links(node: Node, report: Report) -> None:
         report.warn(codes.MISSING_PART, message, node.origin)
 
 
-def _check_names(node: Node, report: Report) -> None:
-    taken: dict[str, str] = {}
+def _check_names(node: Node, report: Report) -> list[Node]:
+    taken: dict[str, Node] = {}
+    shared: list[Node] = []
     for child in node.children:
         name = "" if child.tag in _OWN_NAMES else child.attributes.get("name", "")
         other = taken.get(name)
-        taken.setdefault(name, child.tag)
-        if not name or other is None or (other == child.tag and child.tag in _RENAMED):
+        taken.setdefault(name, child)
+        if not name or other is None or (other.tag == child.tag and child.tag in _RENAMED):
             continue
-        both = f"a <{other}> and a <{child.tag}> are" if other != child.tag else f"two <{child.tag}> are"
+        shared += [other, child]
+        both = f"a <{other.tag}> and a <{child.tag}> are" if other.tag != child.tag else f"two <{child.tag}> are"
         report.warn(codes.DUPLICATE_NAME, f"{both} called '{name}', which libsdformat refuses; both keep the name", child.origin)
+    return shared
