@@ -346,6 +346,16 @@ COM_OUTSIDE = Code(
     "The centre of mass is farther from the box around the body's shapes than half of its diagonal. Often it was given in another frame or unit, or in that of the joint.",
 )
 REPAIRED = Code("HX321", "a fault was repaired", "`check --fix` repaired the fault in the author's text; docs/verify.md lists which faults it repairs, and how.")
+SHARED_NAME = Code(
+    "HX322",
+    "a link and a joint have one name",
+    "URDF allows it. Programs that look links and joints up in one table find one of the two: Pinocchio's `getFrameId` raises, and libsdformat refuses the robot. `check --fix` renames the joint.",
+)
+LATE_LEADER = Code(
+    "HX323",
+    "a joint follows one that comes behind it in the tree",
+    "urdfdom orders the joints below a link by their names, wherever they stand in the file. Pinocchio refuses a mimic joint that comes before its leader, or whose leader follows another joint. `check --fix` turns the relation round.",
+)
 
 # ---- HX4xx: dynamics -------------------------------------------------------------------------------------------------
 NO_DYNAMICS = Code(

@@ -153,6 +153,8 @@ NOTES: Mapping[Code, str] = {
     codes.OPTIONS_FOUND: "they explain the edited file best",
     codes.REWRITTEN: "the output is the same robot in other words",
     codes.REPAIRED: "it was asked for, and each repair is in the list",
+    codes.SHARED_NAME: "the format allows it, and most programs look them up in tables of their own",
+    codes.LATE_LEADER: "the format allows it, and only programs that couple the joints while they build the tree refuse it",
     codes.READ_BESIDE: "it belongs to the robot",
     codes.FOR_TARGET: "it was asked for, and belongs to the robot from then on",
     codes.RENAMED: "references follow, and the name was no name in the target",

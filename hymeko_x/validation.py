@@ -19,7 +19,9 @@ from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir import parts
 from hymeko_x.ir.ids import LUMPED_KINDS
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView
+from hymeko_x.rewrite.apart import names_apart
 from hymeko_x.rewrite.inertia import principal_moments
+from hymeko_x.rewrite.mimics import leaders_first
 from hymeko_x.source import suffix_of
 
 if TYPE_CHECKING:
@@ -65,6 +67,7 @@ def validate(
     found = _Findings(mechanism, report)
     _check_structure(found)
     _check_numbers(found, declared or Declared())
+    _check_names(found)
     for view in mechanism.joints.values():
         for dof in view.joint.dofs:
             _check_dof(found, view.id, dof)
@@ -94,6 +97,10 @@ class _Findings(Struct, frozen=True):
         """A fault of an element."""
         self.report.error(code, message, self.mechanism.origin(key), element=str(key), hint=hint)
 
+    def note(self, code: Code, key: Id, message: str, hint: str) -> None:
+        """A remark about an element."""
+        self.report.note(code, message, self.mechanism.origin(key), element=str(key), hint=hint)
+
     def warn(self, code: Code, key: Id, message: str, hint: str = "") -> None:
         """A doubtful value of an element."""
         self.report.warn(code, message, self.mechanism.origin(key), element=str(key), hint=hint)
@@ -122,6 +129,20 @@ def _check_structure(found: _Findings) -> None:
         names = ", ".join(f"'{root.name}'" for root in loose[:_MOST_NAMED])
         message = f"{len(loose)} links have no parent joint: {names}"
         report.warn(codes.SEVERAL_ROOTS, message, element=str(loose[1]), hint="is a joint missing?")
+
+
+def _check_names(found: _Findings) -> None:
+    """Programs that have one table of names find each link and each joint, and joints behind those that they follow."""
+    mechanism, row = found.mechanism, formats.of_source(found.mechanism)
+    if row is None or not row.one_namespace:
+        return
+    for key in names_apart(mechanism, set()):
+        found.note(codes.SHARED_NAME, key, f"a link is called '{key.name}' as well", "`check --fix` gives the joint another name")
+    for key, edge in leaders_first(mechanism).items():
+        if edge != mechanism.graph.edges[key]:
+            arcs = mechanism.graph.edges[key].arcs
+            message = f"{arcs[0].target} follows {arcs[1].target}, which comes behind it in the tree, or follows another joint"
+            found.note(codes.LATE_LEADER, key, message, "`check --fix` turns the relation round where it has no actuator")
 
 
 def _check_parents(found: _Findings, joints: Iterable[JointView]) -> None:

@@ -15,13 +15,16 @@ from hymeko_x.edits.updating import Updated
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.names import free_name, rename
-from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Inertial, Joint, Shape, Sphere
+from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Drive, Ellipsoid, Inertial, Joint, Shape, Sphere
 from hymeko_x.ir.values import numbers_text
 from hymeko_x.residue.originals import files_of
+from hymeko_x.rewrite.apart import names_apart
 from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.decimals import shorten_computed
 from hymeko_x.rewrite.densities import WATER, give_inertials
 from hymeko_x.rewrite.inertia import physical
+from hymeko_x.rewrite.mimics import leaders_first
+from hymeko_x.rewrite.references import with_references
 from hymeko_x.validation import LEAST_MASS, UNIT_LENGTH, tensor_fault
 
 if TYPE_CHECKING:
@@ -52,6 +55,8 @@ def repaired(source: Source, format: Format, before: Mechanism, found: Sequence[
         raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} is no text in which repairs could be placed", Origin(source.name))
     context = Context(report, files_of(before, source.files))
     named = _name_once(before, context, {one.origin for one in found if one.code == codes.DUPLICATE_NAME})
+    if format.one_namespace:
+        named = _lead_first(_name_apart(named, context), context)
     mended = _mend_joints(named, context, frozenset(one.element for one in found if one.code == codes.NOT_UNIT))
     after = _with_inertials(_mend_sizes(_mend_tensors(mended, context), context), options, context)
     after = shorten_computed(after, before)
@@ -119,6 +124,27 @@ def _name_once(mechanism: Mechanism, context: Context, places: set[Origin | None
         taken[key.kind].add(renamed[key].name)
         _note(context, mechanism, key, f"there are two of the name '{name}'; this {key.kind} is called '{renamed[key].name}'")
     return rename(mechanism, renamed)
+
+
+def _name_apart(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A joint that is called as a link is gets a name of its own, which everything that refers to the joint has."""
+    taken = {key.name for key in (*mechanism.graph.vertices, *mechanism.graph.edges)}
+    renamed = names_apart(mechanism, taken)
+    for key, new in renamed.items():
+        _note(context, mechanism, key, f"a link is called '{key.name}' as well; the joint is called '{new.name}'")
+    return with_references(rename(mechanism, renamed), renamed)
+
+
+def _lead_first(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Joints follow the one of them that comes first in the tree, unless that takes the lead from a joint with an actuator."""
+    turned = leaders_first(mechanism)
+    followers = {edge.arcs[0].target for edge in turned.values()}
+    if any(arc.target in followers for _, _, arcs in mechanism.edges(Drive) for arc in arcs):
+        return mechanism
+    for key, edge in turned.items():
+        if edge != mechanism.graph.edges[key]:
+            _note(context, mechanism, key, f"{edge.arcs[0].target} follows {edge.arcs[1].target}, which comes first in the tree")
+    return mechanism.replace(edges=turned)
 
 
 # ---- joints ------------------------------------------------------------------------------------------------------------------

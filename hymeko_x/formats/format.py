@@ -79,6 +79,8 @@ class Format(Struct, frozen=True):
     robot; None for what a robot has once."""
     references: str | None = None
     """The function ``(notations, names) -> notations`` by which references in the notations follow elements that got other names."""
+    one_namespace: bool = False
+    """Whether programs that read it look links and joints up by name in one table, and joints behind those that they follow."""
     couplings: str | None = None
     """The function ``mechanism -> pairs of an id and an edge``: the couplings that only its extras hold (MJCF: those of tendons)."""
     has_fragments: bool = False

@@ -11,6 +11,7 @@ from hymeko_x.diagnostics import counted, listed
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import free_name, rename
 from hymeko_x.ir.parts import Body, Coupling, Drive, Joint, Sense, Tendon
+from hymeko_x.rewrite.references import with_references
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge
@@ -21,13 +22,11 @@ _SHOWN = 4
 
 def call_joints_apart(mechanism: Mechanism, context: Context) -> Mechanism:
     """A joint, or one of its dofs, that is called as a link is gets ``_joint`` behind its name."""
-    links = {key.name for key, _ in mechanism.vertices(Body)} | {WORLD.name}
+    links = _links(mechanism)
     taken = links | {name for view in mechanism.joints.values() for name in (view.id.name, *(dof.name for dof in view.joint.dofs)) if name}
-    joints: dict[Id, Id] = {}
+    joints = names_apart(mechanism, taken)
     dofs: dict[Id, dict[str, str]] = {}
     for view in mechanism.joints.values():
-        if view.id.name in links:
-            joints[view.id] = Id("joint", _new(view.id.name, taken))
         for dof in view.joint.dofs:
             if dof.name in links:
                 assert dof.name is not None
@@ -38,7 +37,17 @@ def call_joints_apart(mechanism: Mechanism, context: Context) -> Mechanism:
     shown = listed([f"'{old}' is '{new}'" for old, new in changed.items()], _SHOWN)
     message = f"{counted(len(changed), 'joint')} renamed apart from the links of the same name ({context.reason}): {shown}"
     context.report.note(codes.FOR_TARGET, message, element=str(next(iter(joints or dofs))))
-    return rename(_with_dof_names(mechanism, dofs), joints)
+    return with_references(rename(_with_dof_names(mechanism, dofs), joints), joints)
+
+
+def names_apart(mechanism: Mechanism, taken: set[str]) -> dict[Id, Id]:
+    """The joints that are called as a link is, with names of their own, which are ``taken`` then."""
+    links = _links(mechanism)
+    return {key: Id("joint", _new(key.name, taken)) for key in mechanism.joints if key.name in links}
+
+
+def _links(mechanism: Mechanism) -> set[str]:
+    return {key.name for key, _ in mechanism.vertices(Body)} | {WORLD.name}
 
 
 def _new(name: str, taken: set[str]) -> str:

@@ -35,21 +35,24 @@ def put_leaders_first(mechanism: Mechanism, context: Context) -> Mechanism:
 
     That is the order of urdfdom, and so that of Pinocchio. Only groups with a follower before its leader, or as one, change.
     """
+    turned = leaders_first(mechanism)
+    for key, edge in turned.items():
+        if edge != mechanism.graph.edges[key]:
+            message = f"{edge.arcs[0].target} follows {edge.arcs[1].target}, which comes first in the tree ({context.reason})"
+            context.report.note(codes.FOR_TARGET, message, mechanism.origin(key), element=str(key))
+    return mechanism.replace(edges=turned)
+
+
+def leaders_first(mechanism: Mechanism) -> dict[Id, RobotEdge]:
+    """The couplings of those groups as they are when all follow the joint that comes first."""
     lines = dict(_lines(mechanism))
-    if not lines:
-        return mechanism
-    order = _visited(mechanism)
-    edges: dict[Id, RobotEdge] = {}
+    order = _visited(mechanism) if lines else {}
+    turned: dict[Id, RobotEdge] = {}
     for group in _groups(lines):
         following = {lines[key].follower for key in group}
-        wrong = [key for key in group if order[lines[key].follower] < order[lines[key].leader] or lines[key].leader in following]
-        if wrong:
-            edges |= _turned(group, lines, order)
-            for key in wrong:
-                changed = edges[key].arcs
-                message = f"{changed[0].target} follows {changed[1].target}, which comes first in the tree ({context.reason})"
-                context.report.note(codes.FOR_TARGET, message, mechanism.origin(key), element=str(key))
-    return mechanism.replace(edges=edges)
+        if any(order[lines[key].follower] < order[lines[key].leader] or lines[key].leader in following for key in group):
+            turned |= _turned(group, lines, order)
+    return turned
 
 
 class _Mimic(NamedTuple):

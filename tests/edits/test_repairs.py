@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pinocchio
 import pytest
 
 from hymeko_x.cli import main
@@ -118,6 +119,76 @@ def test_other_formats_are_repaired_in_their_own_text(tmp_path: Path) -> None:
     path.write_text(text.format(2, -2, 5), "utf-8")
     assert fix(path, "--profile", "kinematics") == 0
     assert path.read_text("utf-8") == text.format(-2, 2, 5)
+
+
+HAND = f"""<robot name="hand">
+  <link name="base"/>
+  <link name="hand">{INERTIAL}</link> <link name="left">{INERTIAL}</link>
+  <link name="right">{INERTIAL}</link> <link name="tip">{INERTIAL}</link>
+  <joint name="hand" type="revolute">
+    <parent link="base"/><child link="hand"/><limit lower="-1" upper="1"  effort="10" velocity="1"/>
+  </joint>
+  <joint name="a_right" type="prismatic"> <!-- moves with the left one -->
+    <parent link="hand"/><child link="right"/><limit lower="0" upper="0.04" effort="10" velocity="1"/>
+    <mimic joint="b_left" multiplier="2" offset="0.5"/>
+  </joint>
+  <joint name="b_left" type="prismatic">
+    <parent link="hand"/>
+    <child link="left"/>
+    <limit lower="0" upper="0.04" effort="10" velocity="1"/>
+  </joint>
+  <joint name="wrist" type="revolute">
+    <parent link="left"/><child link="tip"/><limit lower="-1" upper="1" effort="10" velocity="1"/>
+    <mimic joint="hand"/>
+  </joint>
+  <transmission name="t"><type>transmission_interface/SimpleTransmission</type>
+    <joint name="hand"><hardwareInterface>hardware_interface/EffortJointInterface</hardwareInterface></joint>
+    <actuator name="m"><mechanicalReduction>1</mechanicalReduction></actuator>
+  </transmission>
+  <gazebo reference="hand"><mu1>0.2</mu1></gazebo>
+  <gazebo reference="hand"><provideFeedback>true</provideFeedback></gazebo>
+  <gazebo><plugin name="p" filename="p.so"><joint_name>hand</joint_name><link_name>hand</link_name></plugin></gazebo>
+</robot>
+"""
+
+
+def test_a_joint_called_as_a_link_gets_a_name_that_all_references_to_the_joint_have(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "r.urdf"
+    text = HAND.replace('<mimic joint="b_left" multiplier="2" offset="0.5"/>', "")
+    path.write_text(text, "utf-8")
+    assert main(["check", str(path), "--profile", "kinematics"]) == 0
+    assert "r.urdf:5: note[HX322]: a link is called 'hand' as well" in capsys.readouterr().err
+    assert fix(path, "--profile", "kinematics") == 0
+    fixed = text.replace('joint name="hand"', 'joint name="hand_joint"').replace("<joint_name>hand", "<joint_name>hand_joint")
+    fixed = fixed.replace('mimic joint="hand"', 'mimic joint="hand_joint"').replace('"hand"><provide', '"hand_joint"><provide')
+    assert path.read_text("utf-8") == fixed
+    assert "r.urdf:5: note[HX321]: a link is called 'hand' as well; the joint is called 'hand_joint'" in capsys.readouterr().err
+
+
+def test_a_mimic_joint_before_its_leader_leads_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The order is that of urdfdom, and so of Pinocchio, which refuses the robot otherwise: by the names of the joints."""
+    path = tmp_path / "r.urdf"
+    text = HAND.replace('joint name="hand"', 'joint name="turn"').replace('mimic joint="hand"', 'mimic joint="turn"')
+    path.write_text(text, "utf-8")
+    with pytest.raises(ValueError, match="not in the kinematic tree"):
+        pinocchio.buildModelFromUrdf(str(path), mimic=True)
+    assert fix(path, "--profile", "kinematics") == 0
+    turned = text.replace('    <mimic joint="b_left" multiplier="2" offset="0.5"/>\n', "")
+    left = '<child link="left"/>\n    <limit lower="0" upper="0.04" effort="10" velocity="1"/>'
+    assert path.read_text("utf-8") == turned.replace(left, f'{left}\n    <mimic joint="a_right" multiplier="0.5" offset="-0.25"/>')
+    assert "note[HX321]: joint 'b_left' follows joint 'a_right', which comes first in the tree" in capsys.readouterr().err
+    assert pinocchio.buildModelFromUrdf(str(path), mimic=True).nq == 2
+
+
+def test_a_joint_with_an_actuator_keeps_the_lead(tmp_path: Path) -> None:
+    path = tmp_path / "r.urdf"
+    text = HAND.replace('joint name="hand"', 'joint name="turn"').replace('mimic joint="hand"', 'mimic joint="turn"')
+    text = text.replace('joint name="turn"><hardware', 'joint name="b_left"><hardware')
+    path.write_text(text, "utf-8")
+    assert fix(path, "--profile", "kinematics") == 0
+    assert path.read_text("utf-8") == text
 
 
 @pytest.mark.parametrize("options", [["--density", "1000"], ["-o", "out.urdf"], ["--dry-run"]])
