@@ -320,16 +320,8 @@ CONFIG = Code(
 # ---- HX31x: what `check` finds ---------------------------------------------------------------------------------------
 EMPTY_ROBOT = Code("HX310", "there is no robot", "The file was read, and it describes no links.")
 LOOSE_JOINT = Code("HX311", "a joint does not join two links", "Every joint leads from one parent link to one child link, which is another one.")
-WRONG_COUNT = Code(
-    "HX312",
-    "there are more or fewer links or joints than declared",
-    "The numbers of links and joints that were declared and those in the file differ: something is missing, doubled or invented.",
-)
-BAD_LIMITS = Code(
-    "HX313",
-    "the numbers of a joint contradict each other",
-    "A lower limit above the upper one, both limits equal, a negative effort, velocity, damping, friction or armature, or an angle that can only be in degrees.",
-)
+WRONG_COUNT = Code("HX312", "there are more or fewer links or joints than declared", "The numbers of links and joints that were declared and those in the file differ: something is missing, doubled or invented.")
+BAD_LIMITS = Code("HX313", "the numbers of a joint contradict each other", "A lower limit above the upper one, both limits equal, a negative effort, velocity, damping, friction or armature, or an angle that can only be in degrees.")
 NO_INERTIA = Code("HX314", "something moves without mass", "A simulator needs a positive mass and an inertia tensor for everything that a joint moves.")
 BAD_MASS = Code("HX315", "a mass is not a mass", "A mass is a finite number of kg that is not negative.")
 BAD_TENSOR = Code(
@@ -346,16 +338,8 @@ COM_OUTSIDE = Code(
     "The centre of mass is farther from the box around the body's shapes than half of its diagonal. Often it was given in another frame or unit, or in that of the joint.",
 )
 REPAIRED = Code("HX321", "a fault was repaired", "`check --fix` repaired the fault in the author's text; docs/verify.md lists which faults it repairs, and how.")
-SHARED_NAME = Code(
-    "HX322",
-    "a link and a joint have one name",
-    "URDF allows it. Programs that look links and joints up in one table find one of the two: Pinocchio's `getFrameId` raises, and libsdformat refuses the robot. `check --fix` renames the joint.",
-)
-LATE_LEADER = Code(
-    "HX323",
-    "a joint follows one that comes behind it in the tree",
-    "urdfdom orders the joints below a link by their names, wherever they stand in the file. Pinocchio refuses a mimic joint that comes before its leader, or whose leader follows another joint. `check --fix` turns the relation round.",
-)
+SHARED_NAME = Code("HX322", "a link and a joint have one name", "Pinocchio's `getFrameId` raises then, and libsdformat refuses the robot.")
+LATE_LEADER = Code("HX323", "a mimic joint before its leader", "The order is that of joint names below a link. Pinocchio refuses such joints.")
 
 # ---- HX4xx: dynamics -------------------------------------------------------------------------------------------------
 NO_DYNAMICS = Code(
