@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import posixpath
 from contextlib import suppress
+from pathlib import PurePath
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -121,6 +122,11 @@ class Source(Struct, frozen=True):
     ignores_kept: bool = False
     parts: Parts | None = None
 
+    @property
+    def stem(self) -> str:
+        """The name of the file without folders and suffix: the name of a robot that has none of its own."""
+        return PurePath(self.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
+
 
 class Reading(NamedTuple):
     """What a frontend reads: the mechanism, and the text of the residue that is kept inside the file (empty = none)."""
@@ -149,6 +155,10 @@ class Package(Struct, frozen=True):
     originals: Mapping[str, str] = field(default_factory=dict)
     digests: str = ""
     prefix: str = ""
+
+    def contents(self, files: Files) -> dict[str, bytes]:
+        """The files beside the main one, by relative path; copies are read from ``files``. Raises: OSError."""
+        return {**self.files, **{name: files.read(path) for name, path in self.copies.items()}}
 
 
 class PackageFiles(Struct, frozen=True):

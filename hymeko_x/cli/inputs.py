@@ -39,7 +39,7 @@ def input_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--from", dest="from_format", metavar="FORMAT", help="the input's format, where suffix and content do not tell")
     where = "where package://NAME and model://NAME are (repeatable)"
     parser.add_argument("--package", action="append", default=[], type=_package, metavar="NAME=DIR", help=where)
-    parser.add_argument("--confine", type=_folder, metavar="DIR", help="read no file outside this folder")
+    parser.add_argument("--confine", type=folder, metavar="DIR", help="read no file outside this folder")
     argument = "an argument of a xacro file; NAME:=VALUE as in ROS works too (repeatable)"
     parser.add_argument("--arg", action="append", default=[], type=_argument, metavar="NAME=VALUE", help=argument)
     picked = "which variant of a USD file's variant set to read, wherever it has that set (repeatable)"
@@ -154,13 +154,14 @@ def _standard_input(chosen: argparse.Namespace) -> Source:
 
 
 def _package(text: str) -> tuple[str, Path]:
-    name, equals, folder = text.partition("=")
-    if not (equals and folder):
+    name, equals, place = text.partition("=")
+    if not (equals and place):
         raise argparse.ArgumentTypeError(f"expected NAME=DIR, found '{text}'")
-    return name, _folder(folder)
+    return name, folder(place)
 
 
-def _folder(text: str) -> Path:
+def folder(text: str) -> Path:
+    """An argument that is a folder. Raises: ArgumentTypeError when there is none of this name."""
     if not Path(text).is_dir():
         raise argparse.ArgumentTypeError(f"there is no folder '{text}'")
     return Path(text)

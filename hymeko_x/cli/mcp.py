@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from hymeko_x.cli import exits
+from hymeko_x.cli.inputs import folder
+
+if TYPE_CHECKING:
+    import argparse
 
 
 def mcp_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `mcp`."""
     where = "the folder to which the tools are confined (default: the working folder)"
-    parser.add_argument("folder", nargs="?", type=_folder, default=Path(), metavar="DIR", help=where)
+    parser.add_argument("folder", nargs="?", type=folder, default=Path(), metavar="DIR", help=where)
 
 
 def run_mcp(chosen: argparse.Namespace) -> int:
@@ -20,9 +24,3 @@ def run_mcp(chosen: argparse.Namespace) -> int:
 
     make_server(chosen.folder).run("stdio")
     return exits.DONE
-
-
-def _folder(text: str) -> Path:
-    if not Path(text).is_dir():
-        raise argparse.ArgumentTypeError(f"there is no folder '{text}'")
-    return Path(text)

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from hymeko_x.dynamics.multibody import Multibody
     from hymeko_x.dynamics.system import Variable
 
-FORMS = ("state-space", "second-order", "port-hamiltonian", "transfer-function")
 STYLES = ("text", "json", "latex", "markdown")
 
 

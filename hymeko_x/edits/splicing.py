@@ -123,11 +123,6 @@ def _deeper(inner: bytes, old_unit: bytes, unit: bytes) -> bytes:
     return unit * count + inner[len(inner) - left :]
 
 
-def line_of(data: bytes, place: int) -> int:
-    """The one-based line of a place."""
-    return data.count(b"\n", 0, place) + 1
-
-
 class Lines:
     """The lines of places in a text, of which many are asked for."""
 

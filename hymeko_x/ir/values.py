@@ -325,21 +325,16 @@ def rotate_tensor(quat: Quat, tensor: Tensor) -> Tensor:
     r = matrix_from_quat(quat)
     xx, yy, zz, xy, xz, yz = tensor
     columns = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
-    (a, b, c), (d, e, f), (g, h, i) = [[_dot(row, column) for column in columns] for row in r]
+    (a, b, c), (d, e, f), (g, h, i) = [[dot(row, column) for column in columns] for row in r]
     first, second, third = r
     x, y = (a, b, c), (d, e, f)
-    turned = (_dot(x, first), _dot(y, second), _dot((g, h, i), third), _dot(x, second), _dot(x, third), _dot(y, third))
+    turned = (dot(x, first), dot(y, second), dot((g, h, i), third), dot(x, second), dot(x, third), dot(y, third))
     return shortest_of(turned)  # type: ignore[return-value]
 
 
-def _dot(a: Vec3, b: Vec3) -> float:
+def dot(a: Vec3, b: Vec3) -> float:
     """The inner product, never a negative zero."""
     return 0.0 + a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def same_rotation(a: Quat, b: Quat, tolerance: float) -> bool:
-    """Whether two unit quaternions turn alike up to an angle of ``tolerance`` rad; the sign does not matter."""
-    return rotation_angle(a, b) <= tolerance
 
 
 def rotation_angle(a: Quat, b: Quat) -> float:

@@ -21,6 +21,7 @@ from hymeko_x.ir.values import (
     Z,
     add,
     cross,
+    dot,
     quat_about,
     quat_from_rpy,
     quat_product,
@@ -113,8 +114,7 @@ def _from_euler(sequence: str, angles: tuple[float, ...]) -> Quat:
 def _from_xyaxes(x: Vec3, y: Vec3) -> Quat:
     """The frame with this x axis whose y axis is as close as can be to the one given."""
     x = unit(x)
-    along = x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
-    y = unit(add(y, scaled(x, -along)))
+    y = unit(add(y, scaled(x, -dot(x, y))))
     z = cross(x, y)
     return _from_columns(x, y, z)
 

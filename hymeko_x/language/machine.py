@@ -327,8 +327,3 @@ def _alternatives(terminals: list[list[str]]) -> str:
 def _uncaptured(pattern: str) -> str:
     """The pattern with its plain groups made non-capturing, so that the terminal's own group is the last one."""
     return re.sub(r"(?<!\\)\((?!\?)", "(?:", pattern)
-
-
-def _atomic(pattern: str) -> str:
-    """A pattern that never gives back a match: white space and comments need not be tried twice."""
-    return f"(?>{_uncaptured(pattern)})"

@@ -39,12 +39,6 @@ class BadResidue(Exception):
     """A text that is no residue, or one of another version."""
 
 
-def parse_residue(text: str) -> Residue:
-    """The only residue in a text. Raises: as :func:`parse_residues`."""
-    (found,) = parse_residues(text)
-    return found
-
-
 def parse_residues(text: str) -> list[Residue]:
     """The residues in a text: one, or several where robots were joined.
 

@@ -23,7 +23,7 @@ def hand_over(mechanism: Mechanism, files: Files, library: str) -> Any:
     except ImportError as error:
         hint = install_command(row.libraries[library])
         raise refuse(codes.ENGINE_MISSING, f"{library} is not installed", hint=hint) from error
-    contents = {**package.files, **{name: files.read(path) for name, path in package.copies.items()}}
+    contents = package.contents(files)
     try:
         return load(package.main, contents)
     except (ValueError, RuntimeError) as error:

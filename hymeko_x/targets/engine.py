@@ -38,8 +38,7 @@ def touching(mechanism: Mechanism, context: Context) -> list[tuple[Id, Id]]:
 
 def compiled(package: Package, files: Files) -> Any:
     """The mjModel of a package. Raises: ValueError where MuJoCo refuses it."""
-    contents = {**package.files, **{name: files.read(path) for name, path in package.copies.items()}}
-    return loaded(MJCF.memory["mujoco"])(package.main, contents)
+    return loaded(MJCF.memory["mujoco"])(package.main, package.contents(files))
 
 
 def extent(model: Any) -> tuple[float, Vec3, float]:

@@ -119,6 +119,11 @@ class Node:
         self.text = None
         return text
 
+    def take_whole_text(self) -> str:
+        """The text of the element, which then has no attribute left either."""
+        self.attributes.clear()
+        return self.take_text()
+
     def leave(self, child: Node) -> None:
         """Undo the taking of a child: it becomes an extra as a whole, as written."""
         child.taken = False

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import Document, Node
 
 COMMENT = "comment"
 """The format of an extra that is a comment: it is the same in every format, and kept without its signs."""
@@ -50,6 +50,12 @@ def extra_of(node: Node, path: str, index: int, format_name: str, verbatim: Call
     if node.tag == COMMENT_NODE:
         return Extra(COMMENT, path, node.text or "", index)
     return Extra(format_name, path, f"<?{node.text}?>" if node.tag == INSTRUCTION_NODE else verbatim(node), index)
+
+
+def extras_around(document: Document, format_name: str) -> list[Extra]:
+    """The comments and instructions before and after the root element."""
+    before = [extra_of(node, PRECEDING, place, format_name) for place, node in enumerate(document.preceding)]
+    return before + [extra_of(node, FOLLOWING, place, format_name) for place, node in enumerate(document.following)]
 
 
 class Unread:

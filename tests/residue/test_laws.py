@@ -15,7 +15,7 @@ from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.ir.types import hints_of, settled
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.merge import restore
-from hymeko_x.residue.reading import parse_residue
+from hymeko_x.residue.reading import parse_residues
 from hymeko_x.residue.text import print_residue
 from hymeko_x.testing import mechanisms
 from tests.residue.exactness import unequal
@@ -25,7 +25,7 @@ from tests.residue.exactness import unequal
 @given(mechanisms(), mechanisms())
 def test_any_mechanism_is_restored_from_any_image(source: Mechanism, image: Mechanism) -> None:
     report = Report()
-    residue = parse_residue(print_residue(residue_of(source, image)))
+    (residue,) = parse_residues(print_residue(residue_of(source, image)))
     assert unequal(source, restore(image, residue, report).mechanism) == []
     assert list(report) == []
 
@@ -66,7 +66,7 @@ def test_what_is_the_same_leaves_no_residue(source: Mechanism) -> None:
 @given(mechanisms(), mechanisms())
 def test_the_text_is_a_fixed_point(source: Mechanism, image: Mechanism) -> None:
     text = print_residue(residue_of(source, image))
-    assert print_residue(parse_residue(text)) == text
+    assert [print_residue(found) for found in parse_residues(text)] == [text]
 
 
 def test_the_types_of_every_part_are_known() -> None:

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.backends.mjcf.steady import integrate_implicitly
 from hymeko_x.diagnostics import Origin
-from hymeko_x.formats.mjcf.keyframes import with_poses
+from hymeko_x.formats.mjcf.keyframes import is_keyframes, with_poses
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.words import NAME, compiler_has
 from hymeko_x.ir.mechanism import ROOT
@@ -117,7 +117,7 @@ _NUMBERS = re.compile(r'\b(qpos|qvel|ctrl)="([^"]*)"')
 def _drop_stale_keyframes(mechanism: Mechanism, context: Context) -> Mechanism:
     """Keyframes are kept verbatim, and fit as long as no joint or actuator is added or removed; MuJoCo refuses others."""
     own = mechanism.extras.get(ROOT, ())
-    if any("<flex" in extra.text or "<composite" in extra.text for extra in own) or not any(_is_keyframes(extra) for extra in own):
+    if any("<flex" in extra.text or "<composite" in extra.text for extra in own) or not any(is_keyframes(extra) for extra in own):
         return mechanism  # soft bodies have coordinates of their own, which are not counted here
     kinds = [dof.kind for view in mechanism.joints.values() for dof in view.joint.dofs]
     counts = {
@@ -126,7 +126,7 @@ def _drop_stale_keyframes(mechanism: Mechanism, context: Context) -> Mechanism:
         "ctrl": sum(1 for _ in mechanism.vertices(Actuator)),
     }
     stale: dict[str, list[str]] = defaultdict(list)
-    kept = tuple(_with_fitting_keys(extra, counts, stale) if _is_keyframes(extra) else extra for extra in own)
+    kept = tuple(_with_fitting_keys(extra, counts, stale) if is_keyframes(extra) else extra for extra in own)
     file = mechanism.source.file
     origin = mechanism.origin(ROOT) or (Origin(file) if file else None)
     for reason, names in stale.items():
@@ -134,10 +134,6 @@ def _drop_stale_keyframes(mechanism: Mechanism, context: Context) -> Mechanism:
         left = "it is" if len(names) == 1 else "they are"
         context.report.warn(codes.NOT_SAID, f"{which} {reason}; {left} left out", origin)
     return mechanism if kept == own else replace(mechanism, extras={**mechanism.extras, ROOT: kept})
-
-
-def _is_keyframes(extra: Extra) -> bool:
-    return extra.format == NAME and extra.text.startswith("<keyframe")
 
 
 def _with_fitting_keys(extra: Extra, counts: dict[str, int], stale: dict[str, list[str]]) -> Extra:

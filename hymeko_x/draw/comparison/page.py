@@ -59,7 +59,7 @@ def html(page: Comparison) -> str:
             '<meta charset="utf-8">',
             f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>{_text(title(page))}</title>",
+            f"<title>{escaped(title(page))}</title>",
             f"<style>{_STYLE}</style>",
             "</head>",
             "<body>",
@@ -78,18 +78,18 @@ def html(page: Comparison) -> str:
 def _head(page: Comparison) -> Iterable[str]:
     verdict = page.verdict
     style = "unknown" if verdict.reason else "different" if verdict.failed else "limited" if verdict.gaps else "same"
-    yield f"<h1>{_text(title(page))}</h1>"
-    yield f'<p class="verdict {style}">{_text(answer(verdict))}</p>'
+    yield f"<h1>{escaped(title(page))}</h1>"
+    yield f'<p class="verdict {style}">{escaped(answer(verdict))}</p>'
     for letter, side, engine in (("A", page.a, verdict.engines[0]), ("B", page.b, verdict.engines[1])):
         read = f"; read by {engine}" if engine else ""
-        yield f'<p class="about">{letter}: {_text(visible(side.name))} ({_text(about(side))}{_text(read)})</p>'
+        yield f'<p class="about">{letter}: {escaped(visible(side.name))} ({escaped(about(side))}{escaped(read)})</p>'
 
 
 def _pictures(page: Comparison) -> Iterable[str]:
     yield "<h2>Pictures</h2>"
     found = page.drawn.pair
     if found is None:
-        yield f"<p>There are no pictures. {_text(visible(page.drawn.reason))}</p>"
+        yield f"<p>There are no pictures. {escaped(visible(page.drawn.reason))}</p>"
         return
     yield '<div class="pictures">'
     for picture, words in (
@@ -98,7 +98,7 @@ def _pictures(page: Comparison) -> Iterable[str]:
         (found.difference, f"difference: {changed_words(found.changed)}"),
     ):
         data = b64encode(png(picture)).decode()
-        yield f'<figure><img alt="{_text(words)}" src="data:image/png;base64,{data}"><figcaption>{_text(words)}</figcaption></figure>'
+        yield f'<figure><img alt="{escaped(words)}" src="data:image/png;base64,{data}"><figcaption>{escaped(words)}</figcaption></figure>'
     yield "</div>"
 
 
@@ -135,18 +135,14 @@ def _trees(page: Comparison) -> Iterable[str]:
 # ---- markup ------------------------------------------------------------------------------------------------------------
 
 
-def _text(words: str) -> str:
-    return escaped(words)
-
-
 def _cells(texts: Sequence[str]) -> str:
-    return "".join(f'<td class="{"short" if len(text) < _SHORT else "long"}">{_text(visible(text))}</td>' for text in texts)
+    return "".join(f'<td class="{"short" if len(text) < _SHORT else "long"}">{escaped(visible(text))}</td>' for text in texts)
 
 
 def _table(headings: Sequence[str], rows: Iterable[str]) -> Iterable[str]:
     """A table of rows whose cells are markup."""
     yield '<div class="wide"><table>'
-    yield f"<thead><tr>{''.join(f'<th>{_text(heading)}</th>' for heading in headings)}</tr></thead><tbody>"
+    yield f"<thead><tr>{''.join(f'<th>{escaped(heading)}</th>' for heading in headings)}</tr></thead><tbody>"
     yield from (f"<tr>{row}</tr>" for row in rows)
     yield "</tbody></table></div>"
 
@@ -159,11 +155,11 @@ def _most(rows: Sequence[str]) -> Iterable[str]:
 
 def _list(lines: Iterable[str]) -> Iterable[str]:
     yield "<ul>"
-    yield from (f"<li>{_text(visible(line))}</li>" for line in lines)
+    yield from (f"<li>{escaped(visible(line))}</li>" for line in lines)
     yield "</ul>"
 
 
 def _folded(summary: str, inside: Iterable[str], *, is_open: bool = False) -> Iterable[str]:
-    yield f"<details{' open' if is_open else ''}><summary>{_text(summary)}</summary>"
+    yield f"<details{' open' if is_open else ''}><summary>{escaped(summary)}</summary>"
     yield from inside
     yield "</details>"

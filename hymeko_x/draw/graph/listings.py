@@ -68,10 +68,6 @@ def _words(node: Node, between: str) -> str:
     return between.join(filter(None, (node.label, node.facts)))
 
 
-def _dot_shape(node: Node) -> str:
-    return "box" if node.is_edge else "ellipse"
-
-
 def _dot_label(node: Node) -> str:
     return _text(_words(node, "\n"))
 

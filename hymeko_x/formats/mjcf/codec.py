@@ -275,17 +275,17 @@ def real(name: str, default: float | None = None) -> Group:
     return Group(name, (name,), read, write, seen_numbers(name, default), exact=True)
 
 
-def first_real(name: str, default: float) -> Group:
-    """One number, of which some formats want more (coefficients of a polynomial); only the first one is typed."""
+def first_real(name: str) -> Group:
+    """One number, of which some formats want more (coefficients of a polynomial); only the first one is typed, 0 by default."""
 
     def read(attributes: Mapping[str, str], settings: Settings) -> float:
         found = numbers_of(attributes, name, 1, 3)
-        return default if found is None else found[0]
+        return 0.0 if found is None else found[0]
 
     def write(value: float, settings: Settings) -> dict[str, str]:
         return {name: number_text(value)}
 
-    return Group(name, (name,), read, write, seen_numbers(name, default))
+    return Group(name, (name,), read, write, seen_numbers(name, 0.0))
 
 
 def reals(name: str, least: int, most: int) -> Group:

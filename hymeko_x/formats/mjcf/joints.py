@@ -164,8 +164,8 @@ JOINT = (
     span("range", "limited", angular=True),
     REF,
     SPRING_REF,
-    first_real("stiffness", 0.0),
-    first_real("damping", 0.0),
+    first_real("stiffness"),
+    first_real("damping"),
     real("frictionloss", 0.0),
     real("armature", 0.0),
     span("actuatorfrcrange", "actuatorfrclimited"),
@@ -174,8 +174,8 @@ JOINT = (
 
 TENDON = (
     span("range", "limited"),
-    first_real("stiffness", 0.0),
-    first_real("damping", 0.0),
+    first_real("stiffness"),
+    first_real("damping"),
     real("frictionloss", 0.0),
     real("armature", 0.0),
     real("width"),

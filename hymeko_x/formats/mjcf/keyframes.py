@@ -32,12 +32,12 @@ class Key(Struct, frozen=True):
 
 def has_keyframes(mechanism: Mechanism) -> bool:
     """Whether a mechanism has keyframes of MJCF."""
-    return any(map(_is_keyframes, mechanism.extras.get(ROOT, ())))
+    return any(map(is_keyframes, mechanism.extras.get(ROOT, ())))
 
 
 def keys_of(mechanism: Mechanism) -> list[Key]:
     """The keyframes of a mechanism from MJCF; one whose numbers do not fit its joints and actuators is left out."""
-    sections = [parse_text(extra.text) for extra in mechanism.extras.get(ROOT, ()) if _is_keyframes(extra)]
+    sections = [parse_text(extra.text) for extra in mechanism.extras.get(ROOT, ()) if is_keyframes(extra)]
     slots = {name: list(_slots(mechanism, name)) for name in (*_BY_JOINT, "ctrl")}
     keys = [_key(dict(node.attributes), slots) for section in sections for node in section.children if node.tag == "key"]
     return [key for key in keys if key is not None]
@@ -54,7 +54,7 @@ def poses(mechanism: Mechanism) -> list[tuple[str, Mapping[Id, tuple[float, ...]
 
 def with_keys(mechanism: Mechanism, keys: Sequence[Key]) -> Mechanism:
     """The mechanism with these keyframes and no others; what a key has no numbers for stays as it is without one."""
-    own = tuple(extra for extra in mechanism.extras.get(ROOT, ()) if not _is_keyframes(extra))
+    own = tuple(extra for extra in mechanism.extras.get(ROOT, ()) if not is_keyframes(extra))
     if keys:
         lines = "".join(f"<key{_text(mechanism, key)}/>" for key in keys)
         place = 1 + max((extra.index for extra in own), default=len(mechanism.layout))
@@ -77,7 +77,8 @@ def with_poses(mechanism: Mechanism) -> Mechanism:
     return with_keys(mechanism, [*own, *new]) if new else mechanism
 
 
-def _is_keyframes(extra: Extra) -> bool:
+def is_keyframes(extra: Extra) -> bool:
+    """Whether an extra is a <keyframe> section of MJCF."""
     return extra.format == NAME and extra.text.startswith("<keyframe")
 
 

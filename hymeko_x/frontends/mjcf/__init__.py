@@ -6,7 +6,6 @@ Source: MJCF of MuJoCo 4.0; docs/mapping/mjcf.md lists what becomes what.
 from __future__ import annotations
 
 import re
-from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes, formats
@@ -130,4 +129,4 @@ def _read_name(root: Element, source: Source, builder: MjcfBuilder) -> str:
     if name:
         return name
     builder.note(ROOT, UNNAMED, True)
-    return PurePath(source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
+    return source.stem

@@ -5,7 +5,6 @@ Source: SDF 1.3 to 1.12 as libsdformat reads it; docs/mapping/sdf.md has the map
 
 from __future__ import annotations
 
-from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes, formats
@@ -36,13 +35,12 @@ from hymeko_x.frontends.sdf.sensors import read_light
 from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.source import Reading
 from hymeko_x.xml.parse import parse
-from hymeko_x.xml.unread import FOLLOWING, PRECEDING, extra_of
+from hymeko_x.xml.unread import extras_around
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Extra
     from hymeko_x.source import Source
-    from hymeko_x.xml.tree import Document, Node
+    from hymeko_x.xml.tree import Node
 
 
 def read(source: Source, report: Report) -> Reading:
@@ -53,7 +51,7 @@ def read(source: Source, report: Report) -> Reading:
     document = parse(source, report)
     root = document.root
     _check_root(root)
-    carried = [_whole_text(node) for node in root.take_children(words.RESIDUE)]
+    carried = [node.take_whole_text() for node in root.take_children(words.RESIDUE)]
     version = _read_version(root, report)
     included = expand_includes(root, source, document.data, words.minor(version), report)
     builder = SdfBuilder(report=report, unread=TextsUnread(root, included.texts, report), versions=included.versions)
@@ -63,14 +61,8 @@ def read(source: Source, report: Report) -> Reading:
     for child in root.children:
         if child.taken:
             builder.unread.close(child)
-    mechanism = builder.finish(name, _around(document), source.name, version)
+    mechanism = builder.finish(name, extras_around(document, words.FORMAT), source.name, version)
     return Reading(with_world_link_as_world(mechanism), "".join(carried))
-
-
-def _whole_text(node: Node) -> str:
-    """The text of an element with nothing else in it."""
-    node.attributes.clear()
-    return node.take_text()
 
 
 def _check_root(root: Node) -> None:
@@ -139,7 +131,7 @@ def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBui
     if not models:
         builder.report.error(codes.MISSING_PART, "the file has no model; the result has no bodies", root.origin)
     own = tops[0].take("name") if is_alone else named
-    return own or PurePath(source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
+    return own or source.stem
 
 
 def _read_content(models: list[Model], builder: SdfBuilder) -> None:
@@ -152,9 +144,3 @@ def _read_content(models: list[Model], builder: SdfBuilder) -> None:
         for node in model.node.children:
             if node.tag == "joint" and node.owner is not None:
                 read_joint(node, model, builder)
-
-
-def _around(document: Document) -> list[Extra]:
-    """The comments and instructions before and after the root element."""
-    before = [extra_of(node, PRECEDING, place, words.FORMAT) for place, node in enumerate(document.preceding)]
-    return before + [extra_of(node, FOLLOWING, place, words.FORMAT) for place, node in enumerate(document.following)]

@@ -5,7 +5,6 @@ Source: URDF 1.0 as urdfdom reads it; docs/mapping/urdf.md has the mapping.
 
 from __future__ import annotations
 
-from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes, formats
@@ -23,13 +22,12 @@ from hymeko_x.frontends.urdf.transmissions import read_transmission
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Reading
 from hymeko_x.xml.parse import parse
-from hymeko_x.xml.unread import FOLLOWING, PRECEDING, Unread, extra_of
+from hymeko_x.xml.unread import Unread, extras_around
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Extra
     from hymeko_x.source import Source
-    from hymeko_x.xml.tree import Document, Node
+    from hymeko_x.xml.tree import Node
 
 
 def read(source: Source, report: Report) -> Reading:
@@ -42,7 +40,7 @@ def read(source: Source, report: Report) -> Reading:
     _check_root(root)
     builder = UrdfBuilder(report, Unread(root, document.data, words.FORMAT, report))
     name = _read_name(root, source, builder)
-    carried = [_whole_text(node) for node in root.take_children(words.RESIDUE)]
+    carried = [node.take_whole_text() for node in root.take_children(words.RESIDUE)]
     _read_version(root, builder)
     for node in root.take_children("material"):
         read_robot_material(root, node, builder)
@@ -56,13 +54,7 @@ def read(source: Source, report: Report) -> Reading:
     check_structure(root, builder, carries=bool("".join(carried)))
     _check_templates(root, builder)
     builder.add_extras(ROOT, *read_srdf(source, builder))
-    return Reading(builder.finish(name, _around(document), source.name), "".join(carried))
-
-
-def _whole_text(node: Node) -> str:
-    """The text of an element with nothing else in it."""
-    node.attributes.clear()
-    return node.take_text()
+    return Reading(builder.finish(name, extras_around(document, words.FORMAT), source.name), "".join(carried))
 
 
 def _check_root(root: Node) -> None:
@@ -76,9 +68,8 @@ def _read_name(root: Node, source: Source, builder: UrdfBuilder) -> str:
     name = root.take("name")
     if name:
         return name
-    stem = PurePath(source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
-    builder.report.warn(codes.BAD_NAME, f"the robot has no name; it is called '{stem}' after its file", root.origin)
-    return stem
+    builder.report.warn(codes.BAD_NAME, f"the robot has no name; it is called '{source.stem}' after its file", root.origin)
+    return source.stem
 
 
 def _read_version(root: Node, builder: UrdfBuilder) -> None:
@@ -107,9 +98,3 @@ def _check_templates(root: Node, builder: UrdfBuilder) -> None:
         builder.report.error(codes.LEFTOVER_TEMPLATE, message, root.origin, hint=hint)
     else:
         builder.report.warn(codes.LEFTOVER_TEMPLATE, f"the name '{name}' is text for xacro; it is kept as it is", root.origin, hint=hint)
-
-
-def _around(document: Document) -> list[Extra]:
-    """The comments and instructions before and after the root element."""
-    before = [extra_of(node, PRECEDING, place, words.FORMAT) for place, node in enumerate(document.preceding)]
-    return before + [extra_of(node, FOLLOWING, place, words.FORMAT) for place, node in enumerate(document.following)]

@@ -155,8 +155,7 @@ def _finished(scene: Scene, builder: UsdBuilder, *, carries: bool) -> Mechanism:
     first = next(iter(builder.bodies), "")
     root = default or scene.stage.GetPrimAtPath("/" + first.split("/")[1] if first else "/")
     origin = Origin(builder.source.name)
-    stem = PurePath(builder.source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
-    name = str(default.GetName()) if default else stem
+    name = str(default.GetName()) if default else builder.source.stem
     if root and not root.IsPseudoRoot():
         builder.note(ROOT, words.ROOT_PRIM, str(root.GetPath()))
     if not builder.bodies and not builder.edges and not carries:

@@ -10,7 +10,7 @@ from msgspec import Struct
 from pxr import Gf, UsdGeom
 
 from hymeko_x import codes
-from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, cross, scaled, unit_quat
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, cross, dot, scaled, unit_quat
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin, Report
@@ -80,22 +80,18 @@ def matrix_of(pose: Pose) -> Any:
 def decomposed(matrix: Any) -> Transform:
     """The rigid pose and the scale of a matrix; a mirrored one has a negative scale along x."""
     *rows, at = ((row[0], row[1], row[2]) for row in numbers_of(matrix))
-    lengths = [math.sqrt(_dot(row, row)) for row in rows]
+    lengths = [math.sqrt(dot(row, row)) for row in rows]
     xyz = (at[0] + 0.0, at[1] + 0.0, at[2] + 0.0)
     if min(lengths) < 1e-12 or not all(map(math.isfinite, (*lengths, *xyz))):
         x, y, z = (v if math.isfinite(v) else 0.0 for v in xyz)
         return Transform(Pose((x, y, z)), (lengths[0], lengths[1], lengths[2]), True)
-    if _dot(cross(rows[0], rows[1]), rows[2]) < 0.0:
+    if dot(cross(rows[0], rows[1]), rows[2]) < 0.0:
         lengths[0] = -lengths[0]
     axes = [scaled(row, 1.0 / length) for row, length in zip(rows, lengths, strict=True)]
-    sheared = max(abs(_dot(axes[0], axes[1])), abs(_dot(axes[0], axes[2])), abs(_dot(axes[1], axes[2]))) > 1e-4
+    sheared = max(abs(dot(axes[0], axes[1])), abs(dot(axes[0], axes[2])), abs(dot(axes[1], axes[2]))) > 1e-4
     turn = Gf.Matrix3d(*axes[0], *axes[1], *axes[2])
     turn.Orthonormalize(False)
     return Transform(_pose(xyz, quat_of(turn.ExtractRotation().GetQuat())), _scale(lengths), sheared)
-
-
-def _dot(a: Vec3, b: Vec3) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _pose(xyz: Vec3, quat: Quat) -> Pose:
