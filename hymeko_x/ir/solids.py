@@ -58,11 +58,11 @@ def joined(solids: Sequence[Solid]) -> Solid:
 def solid_of(geometry: Geometry) -> Solid | None:
     """A primitive of density 1 about its own frame; None for planes and meshes."""
     spread = _spread(geometry)
-    if spread is None:
-        return None
-    volume, moments = spread
-    xx, yy, zz = (volume * moment for moment in moments)
-    return Solid(volume, ZERO, (xx, yy, zz, 0.0, 0.0, 0.0))
+    return None if spread is None else _unit(spread[1]).times(spread[0])
+
+
+def _unit(moments: Vec3) -> Solid:
+    return Solid(1.0, ZERO, (*moments, 0.0, 0.0, 0.0))
 
 
 def _spread(geometry: Geometry) -> tuple[float, Vec3] | None:
@@ -99,14 +99,13 @@ def _capsule(r: float, length: float) -> tuple[float, Vec3]:
 
 
 def evenly_spread(views: Iterable[ShapeView]) -> Solid | None:
-    """The primitives among the shapes as one solid of density 1, in the frame of the body; None without one.
+    """A mass of 1 kg spread evenly over the primitives among the shapes, in the frame of the body; None without one.
 
     The shapes are those that collide, else those that are seen.
     """
-    solids = [(view.shape.role, solid.at(view.pose)) for view in views if (solid := solid_of(view.shape.geometry)) is not None]
-    chosen = [solid for role, solid in solids if role is not Role.VISUAL] or [solid for _, solid in solids]
-    whole = joined(chosen) if chosen else None
-    return whole if whole is not None and whole.mass > 0.0 else None
+    solids = [(view, spread) for view in views if (spread := _spread(view.shape.geometry)) is not None]
+    chosen = [item for item in solids if item[0].shape.role is not Role.VISUAL] or solids
+    return _shared([(volume, _unit(moments).at(view.pose)) for view, (volume, moments) in chosen], 1.0)
 
 
 def with_tensor_of(views: Iterable[ShapeView], inertial: Inertial) -> Inertial | None:
@@ -115,7 +114,7 @@ def with_tensor_of(views: Iterable[ShapeView], inertial: Inertial) -> Inertial |
     if solid is None or inertial.mass is None:
         return None
     com = inertial.com if any(inertial.com) else solid.com
-    return replace(inertial, com=com, tensor=solid.times(inertial.mass / solid.mass).tensor)
+    return replace(inertial, com=com, tensor=solid.times(inertial.mass).tensor)
 
 
 def solid_of_colliders(views: Iterable[ShapeView], density: float) -> Solid | None:
@@ -123,13 +122,19 @@ def solid_of_colliders(views: Iterable[ShapeView], density: float) -> Solid | No
 
     None where one of them is no primitive solid, or they weigh nothing.
     """
-    solids = []
+    parts = []
     for view in views:
         if view.shape.role is Role.VISUAL:
             continue
-        solid = solid_of(view.shape.geometry)
-        if solid is None:
+        spread = _spread(view.shape.geometry)
+        if spread is None:
             return None
-        solids.append(solid.at(view.pose).times(density if view.shape.density is None else view.shape.density))
-    whole = joined(solids) if solids else None
-    return whole if whole is not None and whole.mass > 0.0 else None
+        mass = spread[0] * (density if view.shape.density is None else view.shape.density)
+        parts.append((mass, _unit(spread[1]).at(view.pose)))
+    return _shared(parts, sum(mass for mass, _ in parts))
+
+
+def _shared(parts: Sequence[tuple[float, Solid]], mass: float) -> Solid | None:
+    """A mass in kg that solids of 1 kg share by their weights; None without weight. Whatever the weights are, nothing overflows."""
+    whole = sum(weight for weight, _ in parts)
+    return joined([solid.times(weight / whole) for weight, solid in parts]).times(mass) if whole > 0.0 else None
