@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from hymeko_x import codes, formats
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.language.classes import IMPLIED, is_class, kind_of, settled
+from hymeko_x.language.comments import without_comments
 from hymeko_x.language.expressions import fill, fill_value
 from hymeko_x.language.parser import parse
-from hymeko_x.language.prototypes import Prototypes, meaning_of
+from hymeko_x.language.prototypes import Prototypes, meaning_of, role_of
 from hymeko_x.language.syntax import ArcItem, Field, Import, Item, Node, Quantity, QuotedName, Ref, Stereotype, Using, Value, origin_of
 
 if TYPE_CHECKING:
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 MAX_DEPTH = 64
 """Templates in templates, and assemblies in assemblies."""
 MAX_IMPORTS = 200
+COPY = "<<copy>>"
+"""What stands before a type whose whole block an element has, and not the fields alone."""
 
 Fetch = Callable[[str], bytes | None]
 _Imported = dict[str, dict[str, Node] | None]  # the definitions of each file; None while it is being read
@@ -200,7 +203,7 @@ class Templates:
     def _applied(self, stereotype: Stereotype, environment: Environment, node: Node, chain: tuple[str, ...]) -> Preset:
         prototype = self._prototype(stereotype.ref, node)
         if prototype is not None:
-            return self._of_prototype(prototype, node, chain)
+            return self._of_prototype(prototype, node, chain, copies=stereotype.ref.modifier == COPY)
         name, preset = self._find(stereotype.ref, node)
         if name in chain or len(chain) > MAX_DEPTH:
             raise self.refuse(node, f"the template '{name}' applies itself: {' -> '.join([*chain, name])}")
@@ -252,8 +255,8 @@ class Templates:
             return None
         return None if place_of(found.item) == place_of(node) else found
 
-    def _of_prototype(self, prototype: Prototype, node: Node, chain: tuple[str, ...]) -> Preset:
-        """The fields of a prototype and of its own types, and what its name means for a robot.
+    def _of_prototype(self, prototype: Prototype, node: Node, chain: tuple[str, ...], *, copies: bool) -> Preset:
+        """The fields of a prototype and of its own types, and what its name means for a robot; of one that it ``copies`` the whole block.
 
         Raises: Refusal (HX063) for one that is a type of itself.
         """
@@ -262,8 +265,9 @@ class Templates:
             raise self.refuse(node, f"the type '{name}' leads back to itself: {' -> '.join([*chain, name])}")
         assert isinstance(prototype.item, Node)
         self.count(node, 1 + len(prototype.item.items))
+        given = without_comments(prototype.item).items if copies else self.prototypes.fields_of(prototype.item)
         self.applied.add(place_of(prototype.item))
-        result = Preset((name,), self.prototypes.fields_of(prototype.item), has_prototype=True)
+        result = Preset((name,), given, has_prototype=True)
         for parent in prototype.item.stereotypes:
             result = _combined(result, self._applied(parent, {}, prototype.item, (*chain, name)))
         meaning = meaning_of(prototype.item.name)
@@ -351,7 +355,7 @@ def _slot(item: Item) -> str | None:
     match item:
         case Field(name=name, value=value) if value is not None:
             return f"`{name}" if isinstance(name, QuotedName) else name
-        case ArcItem(role=role) if role:
-            return role
+        case ArcItem():
+            return role_of(item) or None
         case _:
             return None

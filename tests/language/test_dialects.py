@@ -227,6 +227,59 @@ def test_the_root_is_found_beside_its_description_and_its_types(tmp_path: Path) 
     assert robot.vertex(Id("datum", "about"), parts.Datum) == parts.Datum((("author", "me"),))
 
 
+def test_joints_that_stand_in_data_are_relations_of_a_whole_graph() -> None:
+    """Groups of bones, and edges between groups: nothing in it is a body."""
+    skeleton = """
+        meta { state { position [<?> <?> <?>] } elements { bone : -> state {} @joint {} } }
+        skeleton use meta.elements {
+          leg { femur : bone {} tibia : bone {} /* once */ @knee : joint { + femur, - tibia } }
+          left : <<copy>> -> leg { toe {} @ankle : joint { + tibia, - toe } }
+          hip : bone {}
+          @left_hip : joint { + hip, - left, - left.femur }
+          plain : -> leg {}
+        }
+    """
+    place = "{ position [<?> <?> <?>] }"
+    graph = hx.loads(skeleton, "hymeko").mechanism
+    text = hx.dumps(graph, "hymeko")
+    assert hx.loads(text, "hymeko").mechanism == graph
+    assert " ".join(text.split()) == (
+        f"skeleton : graph {{ leg : datum {{ // once femur {place} tibia {place} @knee {{ + femur - tibia }} }} "
+        f"left : datum {{ femur {place} tibia {place} @knee {{ + femur - tibia }} toe @ankle {{ + tibia - toe }} }} "
+        f"hip : datum {place} @left_hip : relation {{ + hip - left - left.femur }} plain }}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "root"),
+    [
+        ("a { x {} y {} z {} @e { + x - y } @f { + x - z } }", "robot"),
+        ("a { x {} y {} z {} @e { + x - z } @f { + y - z } }", "graph"),
+        ("a { x {} y {} @e { -> x, <- y } @f { <- x, -> y } }", "graph"),
+        ("a { x {} y {} z {} @e { + x - y - Z } @f { + x - z - Z } }", "robot"),
+        ("a { x { mass 1 } y {} z {} @e { + x - z } @f { + y - z } }", "robot"),
+    ],
+)
+def test_names_and_arrows_alone_are_a_robot_where_they_make_a_tree(text: str, root: str) -> None:
+    assert hx.dumps(hx.loads(text, "hymeko"), "hymeko").startswith(f"a : {root} {{")
+
+
+def test_a_limit_of_its_own_takes_the_place_of_that_of_the_type() -> None:
+    robot = hx.loads(
+        """
+        arm {
+          link {} @joint {} any [-180, 180] narrow [-90, 90]
+          @rev_joint : joint { ["limit"] -> any }
+          a : link {} b : link {} c : link {}
+          @j : rev_joint { + a, - b, ["axis"] - AXIS_Y, ["limit"] - narrow }
+          @k : rev_joint { + b, - c }
+        }
+        """,
+        "hymeko",
+    ).mechanism
+    assert [view.joint.dofs[0].limits.upper for view in robot.joints.values()] == [math.pi / 2, math.pi]
+
+
 def test_a_long_chain_of_constants_has_a_value() -> None:
     chain = " ".join(f"const a{n} = a{n + 1} + 1;" for n in range(5000))
     graph = hx.loads(f"d {{ {chain} const a5000 = 0; }}\ng : graph {{ b {{ x a0; }} }}", "hymeko").mechanism
@@ -253,6 +306,7 @@ def test_a_long_chain_of_constants_has_a_value() -> None:
         ('d { @"none.hymeko"; }\ng : graph { a {} }', "1:5: error[HX040]: the imported file 'none.hymeko' was not found"),
         ("g { a : nothing {} }", "1:5: error[HX061]: 'a' has the type 'nothing', which is not known"),
         ("a : b { x 1 }\nb : a { y 1 }", "1:1: error[HX063]: the type 'b' leads back to itself: b -> a -> b"),
+        ("g { a { b : <<copy>> -> a {} } }", "1:9: error[HX063]: 'b' is nested more than 200 levels deep"),
         ("g : graph { @e { (+ a } }", "1:23: error[HX060]: unexpected '}'; expected a value, ')' or ','"),
     ],
 )

@@ -92,7 +92,7 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[i
     elements = [element for element in elements if not _is_about_the_whole(element.node)]
     kinds = infer_kinds(expanded, elements)
     if kinds and OUTER.issuperset(kinds) and "robot" not in expanded.types:
-        expanded, elements = _with_units_as_data(expanded)
+        expanded, elements = _as_graph(expanded)
         kinds = infer_kinds(expanded, elements)
     expanded, kinds = with_followers(expanded, elements, kinds, builder.reader)
     _read_root(builder, expanded, kinds, instances)
@@ -110,11 +110,11 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[i
     return with_heritage(replace(found, places=builder.places, stored=builder.stored), tuple(instances.values()))
 
 
-def _with_units_as_data(expanded: Expanded) -> tuple[Expanded, list[Element]]:
-    """The text and its elements with units as a vertex like any other: the numbers of plain data have none."""
+def _as_graph(expanded: Expanded) -> tuple[Expanded, list[Element]]:
+    """The text of a graph and its elements, with units as a vertex like any other: the numbers of plain data have none."""
     items = tuple(_datum(item) if isinstance(item, Element) and _is_units(item.node) else item for item in expanded.items)
     elements = [item for item in items if isinstance(item, Element) and not _is_about_the_whole(item.node)]
-    return expanded._replace(items=items), elements
+    return expanded._replace(items=items, types=("graph", *expanded.types)), elements
 
 
 def _datum(element: Element) -> Element:

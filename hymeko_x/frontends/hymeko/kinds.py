@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir.ids import KINDS
-from hymeko_x.language.prototypes import role_of
-from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, Value, is_field, is_list
+from hymeko_x.language.prototypes import meaning_of, role_of
+from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, QuotedName, Value, is_field, is_list
 
 if TYPE_CHECKING:
     from hymeko_x.language.expansion import Element, Expanded
@@ -29,12 +29,44 @@ def infer_kinds(expanded: Expanded, elements: list[Element]) -> list[str]:
         by_name.setdefault(element.name, []).append(number)
     kinds = [typed_kind(element) for element in elements]
     mode = next((name for name in expanded.types if name in ("robot", "graph")), "")
+    if mode != "robot" and "body" not in kinds and any(map(_holds_joints, elements)):
+        mode = "graph"
+        kinds = ["" if kind == "joint" else kind for kind in kinds]
+    if not mode and _is_bare_graph(elements, kinds, by_name):
+        mode = "graph"
     if not mode:
         _infer_from_edges(elements, kinds, by_name)
     for number, element in enumerate(elements):
         if not kinds[number]:
             kinds[number] = _default(element, mode)
     return kinds
+
+
+def _holds_joints(element: Element) -> bool:
+    """Whether joints stand inside of a vertex: the parts of a whole that is described as a graph, and no robot."""
+    stack = [] if element.node.edge else [item for item in element.node.items if isinstance(item, Node)]
+    while stack:
+        node = stack.pop()
+        if node.edge and any(meaning_of(kind.ref.path[-1]) for kind in node.stereotypes):
+            return True
+        stack.extend(item for item in node.items if isinstance(item, Node))
+    return False
+
+
+def _is_bare_graph(elements: list[Element], kinds: list[str], by_name: dict[str, list[int]]) -> bool:
+    """Whether there are names and arrows alone, and the arrows make no tree of bodies: two lead to one vertex, or one to each."""
+    ends: list[int | None] = []
+    for element, kind in zip(elements, kinds, strict=True):
+        arcs = [item for item in element.node.items if isinstance(item, ArcItem)]
+        plain = len(arcs) == len([item for item in element.node.items if not isinstance(item, Comment)])
+        if kind or element.types or not plain or any(arc.role or arc.weight is not None or arc.items for arc in arcs):
+            return False
+        found = [_target(arc, element, by_name) for arc in arcs]
+        if is_direction(element) or None in found:
+            return False
+        ends.extend(end for arc, end in zip(arcs, found, strict=True) if _EDGES.get(arc.ref.direction) == -1)
+    vertices = sum(not element.node.edge for element in elements)
+    return len(ends) > len(set(ends)) or len(ends) >= vertices > 0
 
 
 def is_direction(element: Element) -> bool:
