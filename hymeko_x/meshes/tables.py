@@ -162,6 +162,11 @@ def _lines_of(data: bytes) -> _Obj:
     return found._replace(has_more=has_more)
 
 
+def faces_of_first_object(data: bytes) -> list[bytes]:
+    """The corners of each face that MuJoCo reads from an OBJ file, as written."""
+    return [row for row, _, _ in _lines_of(data).faces]
+
+
 def _table(rows: list[bytes], width: int) -> NDArray[np.float64]:
     """The first numbers of each row in single precision; missing ones are zero."""
     counts = {len(row.split()) for row in rows[:1]}

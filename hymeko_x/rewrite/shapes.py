@@ -188,7 +188,8 @@ def _static_bodies(mechanism: Mechanism) -> set[Id]:
 PLANE_SIZE = 100.0
 """The edge length in m of the box that stands for an infinite plane."""
 _THICKNESS = 1e-3
-_RINGS = 12
+_RINGS, _AROUND = 16, 28
+"""Of a sphere, as MuJoCo draws one."""
 
 Piece = tuple["Geometry", Pose]
 
@@ -276,8 +277,8 @@ def _shape_as(shape: Shape, geometry: Geometry, role: Role) -> Shape:
 
 @cache
 def _unit_sphere() -> tuple[tuple[float, ...], tuple[int, ...]]:
-    """Points and triangles of a sphere of radius 1 m, in rings about z; a pole is a point, a ring has twice as many as rings."""
-    around = 2 * _RINGS
+    """Points and triangles of a sphere of radius 1 m, in rings about z; a pole is a point."""
+    around = _AROUND
     points = [(0.0, 0.0, 1.0)]
     for ring in range(1, _RINGS):
         height, radius = math.cos(math.pi * ring / _RINGS), math.sin(math.pi * ring / _RINGS)

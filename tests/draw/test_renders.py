@@ -116,3 +116,14 @@ def test_a_joint_with_a_reference_is_drawn_where_it_is_in_the_first_robot(tmp_pa
     api.dump(robot, tmp_path / "a.urdf", "urdf")
     other = api.load(tmp_path / "a.urdf")
     assert pair(Subject(robot, str(tmp_path / "a.xml")), Subject(other, None), LOOK).changed < renders.CHANGED
+
+
+def test_an_ellipsoid_looks_the_same_as_a_mesh_of_urdf(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(
+        '<mujoco><worldbody><body name="egg"><geom type="ellipsoid" size="0.1 0.2 0.4" mass="1" rgba="0 0.5 0.5 1"/></body>'
+        "</worldbody></mujoco>"
+    )
+    robot = api.load(tmp_path / "a.xml")
+    api.dump(robot, tmp_path / "a.urdf", "urdf")
+    other = api.load(tmp_path / "a.urdf")
+    assert pair(Subject(robot, str(tmp_path / "a.xml")), Subject(other, None), LOOK).changed < renders.CHANGED

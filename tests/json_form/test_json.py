@@ -11,6 +11,7 @@ from typing import Any
 import jsonschema
 import pytest
 from hypothesis import HealthCheck, given, settings
+from msgspec.structs import replace
 
 import hymeko_x as hx
 from hymeko_x import formats
@@ -132,6 +133,12 @@ def refused(data: bytes) -> str:
         read_text(data)
     (diagnostic,) = refusal.value.diagnostics
     return str(diagnostic)
+
+
+def test_a_mechanism_without_an_element_of_its_layout_reads_back() -> None:
+    eye, base = Id("camera", "eye"), Id("body", "base")
+    whole = replace(read_text(text_of(SOUND)), layout=(eye, base))
+    assert read_text(text(whole.with_graph(whole.graph.replace(without=[eye])))).layout == (base,)
 
 
 def test_the_document_is_sound() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import random
 import struct
 import tempfile
@@ -22,6 +23,8 @@ import hymeko_x as hx
 
 Points = list[tuple[float, float, float]]
 Solid = tuple[Points, list[tuple[int, ...]]]
+Files = dict[str, bytes]
+"""A file and those that it refers to, by their paths from one folder."""
 
 OUTPUTS = ("r.urdf", "r.xml", "r.usda", "r.sdf", "r.hymeko", "r.mjz")
 
@@ -53,16 +56,18 @@ def triangles(faces: list[tuple[int, ...]]) -> list[tuple[int, int, int]]:
 def obj(chance: random.Random) -> bytes:
     points, faces = solid(chance)
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in points]
-    kind = chance.choice(["plain", "places", "normals", "objects"])
-    if kind == "places":
+    kind = chance.choice(["plain", "places", "normals", "objects", "backward", "backward places", "some normals", "unused normals"])
+    if kind.endswith("places"):
         lines += [f"vt {x!r} {y!r}" for x, y, _ in points]
-    if kind == "normals":
+    if kind.endswith("normals"):
         lines += ["vn 0 0 1"]
-    words = {"plain": "{0}", "objects": "{0}", "places": "{0}/{0}", "normals": "{0}//1"}[kind]
+    words = {"places": "{0}/{0}", "backward places": "{0}/{0}", "normals": "{0}//1"}.get(kind, "{0}")
+    first = -len(points) if kind.startswith("backward") else 1
     for number, face in enumerate(faces):
         if kind == "objects" and number in (0, 4):
             lines.append(f"o part{number}")
-        lines.append("f " + " ".join(words.format(at + 1) for at in face))
+        word = "{0}//1" if kind == "some normals" and number else words
+        lines.append("f " + " ".join(word.format(at + first) for at in face))
     return "\n".join([*lines, ""]).encode()
 
 
@@ -98,8 +103,25 @@ def other(suffix: str) -> Callable[[random.Random], bytes]:
     return made
 
 
-KINDS: dict[str, Callable[[random.Random], bytes]] = {
-    ".obj": obj, ".stl": stl, ".msh": msh, ".dae": other("dae"), ".glb": other("glb"), ".ply": other("ply"),
+def gltf(chance: random.Random) -> Files:
+    """A document with its points in one file and its image in another one."""
+    points, faces = solid(chance)
+    corners = np.array(points)[np.array(triangles(faces))].reshape(-1, 3)
+    image = Image.fromarray(np.array([[[chance.randrange(256) for _ in range(3)]]], np.uint8))
+    visual = trimesh.visual.TextureVisuals(corners[:, :2], material=trimesh.visual.material.PBRMaterial(baseColorTexture=image))
+    whole = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), visual=visual, process=False).export(file_type="glb")
+    length = struct.unpack_from("<I", whole, 12)[0]
+    text = json.loads(whole[20 : 20 + length])
+    text["buffers"][0]["uri"] = "part.bin"
+    text["images"] = [{"uri": "textures/part 1.png" if chance.random() < 0.5 else "part.png"}]
+    name = text["images"][0]["uri"]
+    text["images"][0]["uri"] = name.replace(" ", "%20")
+    return {"part.gltf": json.dumps(text).encode(), "part.bin": whole[28 + length :], name: encoded(image, "PNG")}
+
+
+KINDS: dict[str, Callable[[random.Random], bytes | Files]] = {
+    ".obj": obj, ".stl": stl, ".msh": msh, ".dae": other("dae"), ".glb": other("glb"), ".ply": other("ply"), ".off": other("off"),
+    ".gltf": gltf,
 }  # fmt: skip
 
 
@@ -133,16 +155,24 @@ def assert_comes_back(home: str, suffix: str, chance: random.Random, outputs: tu
     with tempfile.TemporaryDirectory() as place:
         source = Path(place, "source")
         source.mkdir()
-        (source / name).write_bytes(make(chance))
+        write(source, name, make(chance))
         (source / home).write_text(text(home, name))
         expected = measured(measure, source, home)
         for output in outputs:
             if output != home:
                 back, reported = there_and_back(source, home, output)
+                if output == "r.xml":
+                    mujoco.MjModel.from_xml_path(str(back.parent / output))
                 found = measured(measure, back, home)
                 both = expected is not None and found is not None
                 same = both and expected.shape == found.shape and np.allclose(expected, found, rtol=2e-6, atol=2e-6)
                 assert same or reported or expected is None, (output, expected, found)
+
+
+def write(folder: Path, name: str, made: bytes | Files) -> None:
+    for path, data in (made if isinstance(made, dict) else {name: made}).items():
+        (folder / path).parent.mkdir(exist_ok=True)
+        (folder / path).write_bytes(data)
 
 
 def measured(measure: Callable[[Path, str], np.ndarray], folder: Path, home: str) -> np.ndarray | None:
@@ -228,7 +258,8 @@ def ktx(chance: random.Random) -> bytes:
 
 IMAGES: dict[str, Callable[[random.Random], bytes]] = {
     ".png": png,
-    ".jpg": lambda chance: encoded(picture(chance, "RGB"), "JPEG"),
+    ".jpg": lambda chance: encoded(picture(chance, chance.choice(["RGB", "L", "CMYK"])), "JPEG"),
+    ".tga": lambda chance: encoded(picture(chance, chance.choice(["RGB", "RGBA", "L", "P"])), "TGA"),
     ".bmp": lambda chance: encoded(picture(chance, "RGB"), "BMP"),
     ".ktx": ktx,
 }

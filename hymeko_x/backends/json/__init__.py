@@ -60,7 +60,7 @@ def document(mechanism: Mechanism) -> Json:
     root = {
         "vertices": [element(key, part, {}) for key, part in graph.vertices.items()],
         "edges": [element(key, edge.data, {"arcs": [_arc(arc) for arc in edge.arcs]}) for key, edge in graph.edges.items()],
-        "layout": mechanism.layout,
+        "layout": [key for key in mechanism.layout if key in graph.vertices or key in graph.edges],
         **about(ROOT),
     }
     return {MARK: VERSION, "name": mechanism.name, **{name: value for name, value in root.items() if value}}

@@ -23,8 +23,11 @@ def refused(suffix: str, data: bytes) -> str | None:
         if stl_faces(data) > MOST_STL_FACES:
             return f"has {stl_faces(data)} triangles, and MuJoCo reads STL only up to {MOST_STL_FACES}"
     if suffix == ".obj":
+        from hymeko_x.meshes.normals import lacks_normals
         from hymeko_x.meshes.polygons import MOST_CORNERS, leaves_polygons_out
 
+        if lacks_normals(data):
+            return "has normals, but not for every corner; MuJoCo reads all or none"
         if leaves_polygons_out(data):
             return f"has polygons of more than {MOST_CORNERS} corners, and MuJoCo leaves them out"
     return None
