@@ -59,11 +59,11 @@ def test_packages_are_found_on_the_search_path_and_inside_of_a_folder_only(tmp_p
 
 def test_files_beside_a_text_are_named_in_a_warning() -> None:
     report = hx.Report()
-    text = hx.dumps(hx.loads(MACROS, "xacro").mechanism, "xacro", split=True, report=report)
+    text = hx.dumps(hx.loads(MACROS, "xacro"), "xacro", split=True, report=report)
     assert "<xacro:include" in text
     assert [diagnostic.code for diagnostic in report] == [codes.ASSET_NOT_WRITTEN]
     report = hx.Report()
-    hx.dumps(hx.loads(MACROS, "xacro").mechanism, "usd", layout="layered", report=report)
+    hx.dumps(hx.loads(MACROS, "xacro"), "usd", layout="layered", report=report)
     assert codes.ASSET_NOT_WRITTEN in [diagnostic.code for diagnostic in report]
 
 
@@ -72,4 +72,4 @@ def test_an_option_that_does_not_exist_is_a_type_error(tmp_path: Path) -> None:
     with pytest.raises(TypeError, match="colour"):
         hx.load(tmp_path / "arm.urdf", colour="red")  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="colour"):
-        hx.dumps(hx.load(tmp_path / "arm.urdf").mechanism, "urdf", colour="red")  # type: ignore[call-arg]
+        hx.dumps(hx.load(tmp_path / "arm.urdf"), "urdf", colour="red")  # type: ignore[call-arg]

@@ -30,7 +30,7 @@ def test_it_runs_again_after_a_refusal() -> None:
 def test_who_switched_it_off_finds_it_off() -> None:
     gc.disable()
     try:
-        hx.dumps(hx.loads('<robot name="r"><link name="l"/></robot>', "urdf").mechanism, "mjcf")
+        hx.dumps(hx.loads('<robot name="r"><link name="l"/></robot>', "urdf"), "mjcf")
         assert not gc.isenabled()
     finally:
         gc.enable()

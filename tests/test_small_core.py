@@ -100,7 +100,7 @@ ADVICE = {
 
 @pytest.mark.parametrize("verb", VERBS)
 def test_a_verb_works_with_the_core_alone_or_names_its_extra(verb: str, folder: Path) -> None:
-    (folder / "arm.hymeko").write_text(hx.dumps(hx.loads(ROBOT, "urdf", lenient=True).mechanism, "hymeko", lenient=True))
+    (folder / "arm.hymeko").write_text(hx.dumps(hx.loads(ROBOT, "urdf", lenient=True), "hymeko", lenient=True))
     (folder / "hymeko.toml").write_text('[[robot]]\nname = "arm"\nfiles = ["arm.urdf", "arm.hymeko"]\n')
     words, extra = ADVICE[verb]
     done = run(folder, verb, *words.split())

@@ -73,7 +73,7 @@ def test_the_quarter_vehicle_comes_back_with_its_poles(target: str, tmp_path: Pa
 
 @pytest.mark.parametrize("target", ["urdf", "xacro", "mjcf", "usd", "sdf"])
 def test_every_format_for_robots_has_the_masses(target: str) -> None:
-    robot = hx.loads(hx.dumps(hx.load(LISTING).mechanism, target), target).mechanism
+    robot = hx.loads(hx.dumps(hx.load(LISTING), target), target).mechanism
     (joint,) = robot.joints.values()
     assert [dof.kind.value for dof in joint.joint.dofs] == ["slide"]
     (mass,) = [body.inertial.mass for key, body in robot.vertices(hx.ir.parts.Body) if key.name == "link" and body.inertial is not None]

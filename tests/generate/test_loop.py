@@ -27,7 +27,7 @@ def task(format: str = "urdf", prompt: str = "card") -> Task:
 
 
 def right(format: str = "urdf") -> str:
-    return hx.dumps(hx.load(SCARA).mechanism, format)
+    return hx.dumps(hx.load(SCARA), format)
 
 
 @pytest.fixture

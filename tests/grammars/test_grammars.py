@@ -44,14 +44,14 @@ def test_a_grammar_is_valid(name: str) -> None:
 @pytest.mark.parametrize("path", TEXTS, ids=lambda path: path.stem)
 def test_the_listings_and_our_robots_are_of_the_grammars(path: Path) -> None:
     text = path.read_text("utf-8")
-    canonical = hx.dumps(hx.load(path).mechanism, "hymeko")
+    canonical = hx.dumps(hx.load(path), "hymeko")
     assert [name for name in NAMES for one in (text, canonical) if not accepts(name, one)] == []
 
 
 @pytest.mark.full
 @pytest.mark.robots("urdf", "mjcf", "usd", "xacro", "sdf")
 def test_the_canonical_text_of_every_real_robot_is_of_the_grammar(robot: Path) -> None:
-    text = hx.dumps(hx.load(robot, lenient=True).mechanism, "hymeko", lenient=True)
+    text = hx.dumps(hx.load(robot, lenient=True), "hymeko", lenient=True)
     if len(text) > 200_000:
         pytest.skip("points of meshes: numbers alone")
     assert accepts("llguidance", text)
@@ -96,7 +96,7 @@ def test_a_comment_behind_the_first_name_in_parentheses_is_no_expression(text: s
 # ---- mutated texts ---------------------------------------------------------------------------------------------------------------
 
 SMALL = re.findall(r"```hymeko\n(.*?)```", (ROOT / "docs/language.md").read_text("utf-8"), re.DOTALL)
-SHORTEST = sorted((hx.dumps(hx.loads(text, "hymeko").mechanism, "hymeko") for text in SMALL), key=len)[:8]
+SHORTEST = sorted((hx.dumps(hx.loads(text, "hymeko"), "hymeko") for text in SMALL), key=len)[:8]
 _PIECES = '{ } [ ] , = : + - @ a 1 2mm " ` . use import inf < // ('
 PIECES = ["", " ", "\n", *_PIECES.split()]
 

@@ -55,7 +55,7 @@ def test_the_forms_that_the_card_names_are_read() -> None:
 def test_the_commands_of_the_skill_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     text = LISTING.replace('visual { mesh "meshes/hand.stl" }', "visual { sphere 50mm }")
-    hx.dump(hx.loads(text, "hymeko").mechanism, "arm.urdf")
+    hx.dump(hx.loads(text, "hymeko"), "arm.urdf")
     for command in COMMANDS:
         program, *words = shlex.split(command)
         assert program == "hymeko-x"

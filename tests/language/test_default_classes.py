@@ -64,7 +64,7 @@ CLASSES = """\
 
 
 def _hymeko() -> str:
-    return hx.dumps(hx.loads(MJCF.encode(), "mjcf").mechanism, "hymeko")
+    return hx.dumps(hx.loads(MJCF.encode(), "mjcf"), "hymeko")
 
 
 def _joint(robot: hx.Mechanism, name: str) -> parts.Dof:
@@ -138,15 +138,15 @@ def test_numbers_of_a_class_are_in_the_units_of_its_format(units: str) -> None:
 
 def test_a_nameless_class_is_called_main() -> None:
     mjcf = MJCF.replace("<default>\n", '<default>\n    <geom condim="1"/>\n', 1)
-    text = hx.dumps(hx.loads(mjcf.encode(), "mjcf").mechanism, "hymeko")
+    text = hx.dumps(hx.loads(mjcf.encode(), "mjcf"), "hymeko")
     assert "  main() : class {\n    geom { condim 1 }\n    leg() {\n" in text
     robot = hx.loads(text.encode(), "hymeko").mechanism
-    assert hx.dumps(robot, "mjcf") == hx.dumps(hx.loads(mjcf.encode(), "mjcf").mechanism, "mjcf")
+    assert hx.dumps(robot, "mjcf") == hx.dumps(hx.loads(mjcf.encode(), "mjcf"), "mjcf")
 
 
 def test_classes_with_a_comment_in_them_stay_a_section_of_their_format_and_are_types_all_the_same() -> None:
     mjcf = MJCF.replace('<default class="knee">', '<!-- bends --><default class="knee">')
-    text = hx.dumps(hx.loads(mjcf.encode(), "mjcf").mechanism, "hymeko")
+    text = hx.dumps(hx.loads(mjcf.encode(), "mjcf"), "hymeko")
     assert "default(class=leg) {" in text
     assert "@knee : knee { + thigh - calf }" in text
     assert hx.loads(text.encode(), "hymeko").mechanism == hx.loads(mjcf.encode(), "mjcf").mechanism

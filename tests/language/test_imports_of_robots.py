@@ -178,7 +178,7 @@ def test_a_text_that_imports_is_verified_against_what_it_becomes(here: Path, suf
 
 
 def test_a_printed_robot_stands_inside_another_one(here: Path) -> None:
-    hx.dump(hx.load("arm.xml").mechanism, "arm.hymeko")
+    hx.dump(hx.load("arm.xml"), "arm.hymeko")
     text = 'import "{}" as arm r : robot {{ a : arm {{}} }}'
     assert load(here, text.format("arm.hymeko")) == load(here, text.format("arm.xml"))
 

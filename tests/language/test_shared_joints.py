@@ -36,7 +36,7 @@ def read(text: str) -> Mechanism:
     found = hx.loads(text, "hymeko").mechanism
     printed = hx.dumps(found, "hymeko")
     assert hx.loads(printed, "hymeko").mechanism == found
-    assert hx.dumps(hx.loads(printed, "hymeko").mechanism, "hymeko") == printed
+    assert hx.dumps(hx.loads(printed, "hymeko"), "hymeko") == printed
     return found
 
 
@@ -74,7 +74,7 @@ def test_every_child_has_a_joint_that_follows_the_first_one() -> None:
 
 
 def test_the_printer_makes_one_edge_of_them() -> None:
-    printed = hx.dumps(hx.loads(GRIPPER, "hymeko").mechanism, "hymeko")
+    printed = hx.dumps(hx.loads(GRIPPER, "hymeko"), "hymeko")
     arcs = "[0 0.02 0.06] + palm - left [0 -0.02 0.06] - right { ratio -1 } [[0.02 0 0.06] [0 0 90]] - thumb { ratio 0.5 } - nail"
     assert arcs in " ".join(printed.split())
     assert "@covers : fixed { [0 0 -1] + palm - case [0 1 0] - lid }" in printed

@@ -17,7 +17,7 @@ def _printed(*links: str) -> str:
     for name, content in (link.split("|") for link in links):
         text += f'<link name="{name}">{MASS}{content}</link><joint name="{name}_joint" type="revolute">'
         text += f'<parent link="base"/><child link="{name}"/><axis xyz="0 1 0"/>{LIMIT}</joint>'
-    return hx.dumps(hx.loads(f'<robot name="r">{text}</robot>'.encode(), "urdf").mechanism, "hymeko")
+    return hx.dumps(hx.loads(f'<robot name="r">{text}</robot>'.encode(), "urdf"), "hymeko")
 
 
 def _stereotypes(text: str) -> list[str]:
@@ -58,7 +58,7 @@ def _joints(*pairs: str) -> list[str]:
     ends = [pair.split("|") for pair in pairs]
     bodies = " ".join(f"{child} {{ mass {number} }}" for number, (_, child) in enumerate(ends, 1))
     joints = " ".join(f"@{name} {{ + base - {child} axis=Y limit [-61 61] effort 41 velocity 121 damping 0.125 }}" for name, child in ends)
-    return _stereotypes(hx.dumps(hx.loads(f"r : robot {{ base {{}} {bodies} {joints} }}", "hymeko").mechanism, "hymeko"))
+    return _stereotypes(hx.dumps(hx.loads(f"r : robot {{ base {{}} {bodies} {joints} }}", "hymeko"), "hymeko"))
 
 
 def test_joints_of_one_limb_are_called_after_it() -> None:
@@ -75,5 +75,5 @@ def test_shapes_beside_their_bodies_are_called_after_the_side() -> None:
     shape = "box [0.0625 0.125 0.25] rgba [0.125 0.25 0.5] name=x"
     places = ("0 0.03125 0", "0 0.03125 0", "0 -0.03125 0", "0 -0.03125 0")
     legs = " ".join(f"hip{n} {{ mass {n} visual {{ {shape}{n} at [[{place}] [12.25 34.5 56.75]] }} }}" for n, place in enumerate(places, 1))
-    text = hx.dumps(hx.loads(f"r : robot {{ {legs} }}", "hymeko").mechanism, "hymeko")
+    text = hx.dumps(hx.loads(f"r : robot {{ {legs} }}", "hymeko"), "hymeko")
     assert _stereotypes(text) == ["hip", "right_hip_look", "left_hip_look"]

@@ -29,7 +29,7 @@ QUADRUPED = (
 
 
 def test_what_legs_share_is_in_classes_called_after_their_parts() -> None:
-    text = hx.dumps(hx.loads(QUADRUPED, "urdf").mechanism, "mjcf")
+    text = hx.dumps(hx.loads(QUADRUPED, "urdf"), "mjcf")
     head = text[text.index("  <default>") : text.index("  <asset>")]
     assert (
         head
@@ -61,7 +61,7 @@ def test_what_legs_share_is_in_classes_called_after_their_parts() -> None:
 
 
 def test_actuators_share_a_class_as_well() -> None:
-    text = hx.dumps(hx.loads(QUADRUPED, "urdf").mechanism, "mjcf", actuators="position")
+    text = hx.dumps(hx.loads(QUADRUPED, "urdf"), "mjcf", actuators="position")
     assert '<position kp="400" kv="40" ctrlrange="-0.03125 0.03125"/>\n' in text[: text.index("<asset>")]
     assert '<position name="rh_ankle" class="ankle" joint="rh_ankle"/>' in text
 
@@ -76,7 +76,7 @@ def test_joints_and_motors_share_a_name_inside_of_one_class_only() -> None:
 def test_the_classes_of_roles_give_no_type_and_no_size() -> None:
     box = '<visual><geometry><box size="1 2 3"/></geometry></visual>'
     ball = '<visual><geometry><sphere radius="1"/></geometry></visual>'
-    text = hx.dumps(hx.loads(f'<robot name="r"><link name="a">{box * 3}{ball}</link></robot>', "urdf").mechanism, "mjcf")
+    text = hx.dumps(hx.loads(f'<robot name="r"><link name="a">{box * 3}{ball}</link></robot>', "urdf"), "mjcf")
     assert '<geom contype="0" conaffinity="0" group="2"/>' in text  # a shape that a person adds is no box
     assert text.count('<geom class="visual" type="box" size="0.5 1 1.5"/>') == 3
     assert '<geom class="visual" type="sphere" size="1"/>' in text

@@ -40,7 +40,7 @@ def actuators(text: str) -> str:
 
 def efforts(text: str, target: str = "urdf") -> dict[str, float | None]:
     """The effort limits of the joints in the converted robot, by name."""
-    robot = hx.loads(hx.dumps(hx.loads(text, "mjcf").mechanism, target), target).mechanism
+    robot = hx.loads(hx.dumps(hx.loads(text, "mjcf"), target), target).mechanism
     return {view.id.name: view.joint.dofs[0].limits.effort for view in robot.joints.values() if view.joint.dofs}
 
 

@@ -50,5 +50,5 @@ def test_an_order_is_a_word_or_the_beginnings_of_its_runs(order: tuple[str, ...]
     named = _mjcf(order)
     for name in NAMES:
         named = named.replace(f'<mesh name="{name}" {TETRA}/>', f'<mesh name="{name}" file="{name}.stl"/>')
-    found = re.findall(r"meshes\S* ?(?:\"[^\"]*\")?", hx.dumps(hx.loads(named.encode(), "mjcf").mechanism, "hymeko"))
+    found = re.findall(r"meshes\S* ?(?:\"[^\"]*\")?", hx.dumps(hx.loads(named.encode(), "mjcf"), "hymeko"))
     assert [text.strip() for text in found] == ([] if note is None else [note])

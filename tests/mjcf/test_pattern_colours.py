@@ -63,7 +63,7 @@ def test_urdf_has_the_mean_colour_and_mjcf_comes_back_with_its_pattern() -> None
     ).mechanism
     urdf = hx.dumps(source, "urdf", keep="inside")
     assert '<color rgba="0.4167 0.1667 0 1"/>' in urdf
-    assert hx.dumps(hx.loads(urdf, "urdf").mechanism, "mjcf") == robot_text
+    assert hx.dumps(hx.loads(urdf, "urdf"), "mjcf") == robot_text
 
 
 @pytest.mark.parametrize("texture", ['width="0" height="0" mark="edge"', 'width="-3" mark="cross"', 'rgb1="nan 0 0"'])

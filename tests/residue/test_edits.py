@@ -38,17 +38,17 @@ def _written_again(robot: Mechanism, format: str) -> Mechanism:
 
 @pytest.fixture(scope="module")
 def walker() -> str:
-    return hx.dumps(hx.loads(PLAIN_MJCF, "mjcf").mechanism, "urdf", keep="inside")
+    return hx.dumps(hx.loads(PLAIN_MJCF, "mjcf"), "urdf", keep="inside")
 
 
 @pytest.fixture(scope="module")
 def arm() -> str:
-    return hx.dumps(hx.loads(URDF, "urdf").mechanism, "mjcf", keep="inside")
+    return hx.dumps(hx.loads(URDF, "urdf"), "mjcf", keep="inside")
 
 
 @pytest.fixture(scope="module")
 def macros() -> str:
-    return hx.dumps(hx.loads(PLAIN_MJCF, "mjcf").mechanism, "xacro", keep="inside")
+    return hx.dumps(hx.loads(PLAIN_MJCF, "mjcf"), "xacro", keep="inside")
 
 
 def _back_from(carrier: str, format: str, edits: list[Edit], source: Mechanism) -> Mechanism:
@@ -170,8 +170,8 @@ def test_a_shape_without_a_geometry_is_left_out_of_mjcf_and_a_height_field_is_no
     field = '<hfield name="hill" nrow="2" ncol="2" size="1 1 1 1" elevation="0 1 1 0"/>'
     source = f'<mujoco><asset>{field}</asset><worldbody><geom name="hill" type="hfield" hfield="hill"/></worldbody></mujoco>'
     bare = '<link name="base"><visual name="bare"><geometry/></visual></link>'
-    carrier = hx.dumps(hx.loads(source, "mjcf").mechanism, "urdf", keep="inside").replace("<hymeko:residue", f"{bare}<hymeko:residue")
-    model = mujoco.MjModel.from_xml_string(hx.dumps(hx.loads(carrier, "urdf").mechanism, "mjcf", keep="inside"))
+    carrier = hx.dumps(hx.loads(source, "mjcf"), "urdf", keep="inside").replace("<hymeko:residue", f"{bare}<hymeko:residue")
+    model = mujoco.MjModel.from_xml_string(hx.dumps(hx.loads(carrier, "urdf"), "mjcf", keep="inside"))
     assert [model.geom(number).name for number in range(model.ngeom)] == ["hill"]
 
 
@@ -209,11 +209,11 @@ _PLANAR = """<mujoco model="planar">
 
 def test_an_edit_of_a_chain_below_the_world_comes_home() -> None:
     """No shape and no other joint of the source says which link of the URDF the world is."""
-    home = hx.dumps(hx.loads(_PLANAR, "mjcf").mechanism, "mjcf", keep="inside")
-    text = hx.dumps(hx.loads(_PLANAR, "mjcf").mechanism, "urdf", keep="inside")
-    assert hx.dumps(hx.loads(text, "urdf").mechanism, "mjcf", keep="inside") == home
+    home = hx.dumps(hx.loads(_PLANAR, "mjcf"), "mjcf", keep="inside")
+    text = hx.dumps(hx.loads(_PLANAR, "mjcf"), "urdf", keep="inside")
+    assert hx.dumps(hx.loads(text, "urdf"), "mjcf", keep="inside") == home
     edited = text.replace('damping="0.5"', 'damping="0.75"')
-    assert hx.dumps(hx.loads(edited, "urdf").mechanism, "mjcf", keep="inside") == home.replace('damping="0.5"', 'damping="0.75"') != home
+    assert hx.dumps(hx.loads(edited, "urdf"), "mjcf", keep="inside") == home.replace('damping="0.5"', 'damping="0.75"') != home
 
 
 def test_two_dofs_with_one_name_get_two_in_mjcf() -> None:
@@ -221,7 +221,7 @@ def test_two_dofs_with_one_name_get_two_in_mjcf() -> None:
     robot = hx.loads(_PLANAR.replace("  </worldbody>", f"{other}</worldbody>"), "mjcf").mechanism
     text = hx.dumps(robot, "hymeko").replace("z : slide", "o : slide").replace("{ z - torso }", "{ o - torso }")
     report = Report()
-    model = mujoco.MjModel.from_xml_string(hx.dumps(hx.loads(text, "hymeko").mechanism, "mjcf", report=report, keep="inside"))
+    model = mujoco.MjModel.from_xml_string(hx.dumps(hx.loads(text, "hymeko"), "mjcf", report=report, keep="inside"))
     assert [model.joint(number).name for number in range(model.njnt)] == ["x", "o", "y", "o#2"]
     assert [said.code for said in report if said.severity.rank] == [codes.RENAMED]
 
@@ -269,7 +269,7 @@ def test_what_the_editor_names_like_something_carried_is_kept() -> None:
 
 @pytest.mark.unread("HX204")
 def test_a_damaged_residue_is_one_warning_and_the_file_is_read_without() -> None:
-    text = hx.dumps(hx.loads(MJCF, "mjcf").mechanism, "urdf", keep="inside")
+    text = hx.dumps(hx.loads(MJCF, "mjcf"), "urdf", keep="inside")
     for broken in (
         text.replace("version 2", "version 3"),
         text.replace("kept : residue {", "kept : residue"),

@@ -41,7 +41,7 @@ def test_other_readers_see_the_same(
 
 
 def test_the_only_trace_in_a_model_is_one_text() -> None:
-    spec = mujoco.MjSpec.from_string(hx.dumps(hx.loads(URDF, "urdf").mechanism, "mjcf", keep="inside"))
+    spec = mujoco.MjSpec.from_string(hx.dumps(hx.loads(URDF, "urdf"), "mjcf", keep="inside"))
     assert [text.name for text in spec.texts] == ["hymeko-x residue"]
     assert spec.compile().ntext == 1
 

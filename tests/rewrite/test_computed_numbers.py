@@ -69,7 +69,7 @@ def test_a_file_from_mjcf_has_no_noise_in_urdf() -> None:
       <geom type="capsule" fromto="0.1 0 0.2 0.3 0 0.2" size="0.02"/>
       <body name="b" pos="0.3 0 0" quat="0.7071067811865476 0 0.7071067811865475 0"><joint axis="0 0 1" pos="0.1 0.2 0"/>
       <inertial pos="0 0 0" mass="1" quat="0.5 0.5 -0.5 0.5" diaginertia="0.3 0.2 0.1"/></body></body></worldbody></mujoco>"""
-    urdf = hx.dumps(hx.loads(text.encode(), "mjcf").mechanism, "urdf")
+    urdf = hx.dumps(hx.loads(text.encode(), "mjcf"), "urdf")
     assert 'length="0.2"' in urdf
     assert '<origin xyz="0 0 0" rpy="1.5707963267948966 -1.5707963267948966 0"/>' in urdf
     assert not re.search(r"e-1\d|\d00000000\d|99999999", urdf)
@@ -78,7 +78,7 @@ def test_a_file_from_mjcf_has_no_noise_in_urdf() -> None:
 def test_ends_of_a_capsule_have_no_rotation_and_a_rotation_about_y_is_a_pitch_alone() -> None:
     geom = '<geom type="capsule" size="0.1" fromto="0.5 0 0.25 1 0 0.5" mass="1"/>'
     mjcf = f'<mujoco><worldbody><body name="a">{geom}</body></worldbody></mujoco>'
-    urdf = hx.dumps(hx.loads(mjcf.encode(), "mjcf").mechanism, "urdf")
+    urdf = hx.dumps(hx.loads(mjcf.encode(), "mjcf"), "urdf")
     found = re.findall(r'<collision>\s*<origin xyz="([^"]*)" rpy="([^"]*)"/>\s*<geometry>\s*<(\w+)', urdf)
     assert [(place, solid) for place, _, solid in found] == [("0.75 0 0.375", "cylinder"), ("0.5 0 0.25", "sphere"), ("1 0 0.5", "sphere")]
     roll, pitch, yaw = map(float, found[0][1].split())

@@ -19,7 +19,7 @@ IMU = """<gazebo reference="b"><sensor name="imu" type="imu"><imu>
 
 
 def sdf(text: str) -> str:
-    return hx.dumps(hx.loads(text, "urdf").mechanism, "sdf")
+    return hx.dumps(hx.loads(text, "urdf"), "sdf")
 
 
 def test_a_prefix_is_declared_as_the_source_declares_it() -> None:

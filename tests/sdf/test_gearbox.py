@@ -55,7 +55,7 @@ def test_a_hinge_that_leads_to_the_reference_body_counts_backwards() -> None:
 
 def test_it_is_written_as_its_author_wrote_it() -> None:
     text = gearbox()
-    assert canonical(hx.dumps(hx.loads(text, "sdf").mechanism, "sdf").encode()) == canonical(text.encode())
+    assert canonical(hx.dumps(hx.loads(text, "sdf"), "sdf").encode()) == canonical(text.encode())
 
 
 def test_another_ratio_is_written_in_its_place_and_another_relation_as_a_mimic() -> None:

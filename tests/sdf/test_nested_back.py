@@ -37,31 +37,31 @@ def pose_of(text: str, name: str) -> str | None:
 
 @pytest.mark.parametrize("format", ["mjcf", "usd"])
 def test_models_in_models_come_back_with_their_names_and_poses(format: str) -> None:
-    back = hx.dumps(hx.loads(hx.dumps(hx.loads(DEEP, "sdf").mechanism, format), format).mechanism, "sdf")
+    back = hx.dumps(hx.loads(hx.dumps(hx.loads(DEEP, "sdf"), format), format), "sdf")
     found = structure(back)
     assert found["/m/outer/inner"] == {"a", "b", "j"}
     assert {"l", "f", "inner", "c"} <= found["/m/outer"]
     assert {"base", "outer", "k"} <= found["/m"]
     assert pose_of(back, "inner") == "0 0 1 0 0 0"
-    assert hx.dumps(hx.loads(back, "sdf").mechanism, "sdf") == back
+    assert hx.dumps(hx.loads(back, "sdf"), "sdf") == back
 
 
 def test_a_joint_goes_into_the_model_that_has_both_of_its_links() -> None:
     mjcf = """<mujoco model="m"><worldbody><body name="base"><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
       <body name="a::l"><joint name="a::j"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><site name="a::__model__"/></body>
     </body></worldbody></mujoco>"""
-    found = structure(hx.dumps(hx.loads(mjcf, "mjcf").mechanism, "sdf"))
+    found = structure(hx.dumps(hx.loads(mjcf, "mjcf"), "sdf"))
     assert found["/m/a"] == {"l"}
     assert "a_j" in found["/m"]
 
 
 def test_without_the_frame_of_a_model_a_name_is_no_path() -> None:
     mjcf = '<mujoco model="m"><worldbody><body name="a::l"><freejoint/><geom size="1"/></body></worldbody></mujoco>'
-    assert structure(hx.dumps(hx.loads(mjcf, "mjcf").mechanism, "sdf")) == {"/m": {"a_l"}}
+    assert structure(hx.dumps(hx.loads(mjcf, "mjcf"), "sdf")) == {"/m": {"a_l"}}
 
 
 def test_a_link_with_the_name_of_a_model_beside_it_gets_another_one() -> None:
     inside = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
     mjcf = f"""<mujoco model="m"><worldbody><body name="a"><freejoint name="f"/>{inside}</body>
       <body name="a::l"><freejoint name="g"/>{inside}<site name="a::__model__"/></body></worldbody></mujoco>"""
-    assert structure(hx.dumps(hx.loads(mjcf, "mjcf").mechanism, "sdf")) == {"/m": {"a", "a_body"}, "/m/a": {"l"}}
+    assert structure(hx.dumps(hx.loads(mjcf, "mjcf"), "sdf")) == {"/m": {"a", "a_body"}, "/m/a": {"l"}}

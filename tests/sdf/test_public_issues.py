@@ -60,7 +60,7 @@ def test_it_is_converted(issue: str, tmp_path: Path) -> None:
 
 
 def test_gz_usd_33_a_joint_without_an_actuator_has_no_drive() -> None:
-    assert "drive:" not in hx.dumps(hx.loads(SAMPLES["continuous"], "sdf").mechanism, "usd")
+    assert "drive:" not in hx.dumps(hx.loads(SAMPLES["continuous"], "sdf"), "usd")
 
 
 def test_sdformat_986_no_link_and_no_fixed_joint_is_lost_on_the_way_from_urdf(tmp_path: Path) -> None:

@@ -37,7 +37,7 @@ def actuators(robot: Mechanism) -> list[Actuator]:
 
 
 def test_an_effort_limit_is_the_greatest_force_of_a_drive_and_no_actuator() -> None:
-    text = hx.dumps(hx.loads(URDF, "urdf").mechanism, "usd")
+    text = hx.dumps(hx.loads(URDF, "urdf"), "usd")
     assert drives(text) == {"turn": {"force": 200.0}, "slide": {"force": 30.5}}
     robot = hx.loads(text, "usd").mechanism
     assert actuators(robot) == []
@@ -46,7 +46,7 @@ def test_an_effort_limit_is_the_greatest_force_of_a_drive_and_no_actuator() -> N
 
 @pytest.mark.parametrize(("kind", "gains"), [("position", {"kp", "kd"}), ("velocity", {"kd"}), ("motor", set())])
 def test_actuators_that_are_asked_for_can_drive_the_stage(kind: str, gains: set[str]) -> None:
-    text = hx.dumps(hx.loads(URDF, "urdf").mechanism, "usd", actuators=kind)
+    text = hx.dumps(hx.loads(URDF, "urdf"), "usd", actuators=kind)
     found = drives(text)
     assert {name: drive["force"] for name, drive in found.items()} == {"turn": 200.0, "slide": 30.5}
     assert [drive.keys() - {"force"} for drive in found.values()] == [gains, gains]
@@ -55,5 +55,5 @@ def test_actuators_that_are_asked_for_can_drive_the_stage(kind: str, gains: set[
 
 
 def test_a_greatest_force_that_is_edited_is_another_one() -> None:
-    text = hx.dumps(hx.loads(URDF, "urdf").mechanism, "usd").replace("maxForce = 200", "maxForce = 50")
+    text = hx.dumps(hx.loads(URDF, "urdf"), "usd").replace("maxForce = 200", "maxForce = 50")
     assert [dict(part.parameters)["forcerange"] for part in actuators(hx.loads(text, "usd").mechanism)] == [(-50.0, 50.0)]

@@ -40,7 +40,7 @@ def verdicts(paths: list[Path], suffix: str, folder: Path) -> dict[str, object]:
     wrong: dict[str, object] = {}
     for path in paths:
         target = folder / f"out{suffix}"
-        hx.dump(hx.load(path).mechanism, target)
+        hx.dump(hx.load(path), target)
         verdict = hx.verify(path, target, samples=50)
         if not verdict.is_same:
             wrong[str(path)] = [f"{check.quantity}: {check.worst} at {check.at}" for check in verdict.failed] or verdict.reason

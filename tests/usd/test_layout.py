@@ -94,7 +94,7 @@ def test_what_is_too_long_for_a_text_stands_in_a_crate_beside_it(tmp_path: Path)
     assert hx.load(out).mechanism == hx.load(source).mechanism
     assert hx.verify(source, out).is_same
     whole = tmp_path / "whole.usda"
-    whole.write_text(hx.dumps(hx.load(source).mechanism, "usd", keep="inside"))
+    whole.write_text(hx.dumps(hx.load(source), "usd", keep="inside"))
     assert hx.load(whole).mechanism == hx.load(source).mechanism
 
 
@@ -126,7 +126,7 @@ LONG = """robot : robot {
 def test_prims_keep_their_order_where_only_some_have_long_arrays(tmp_path: Path) -> None:
     points = " ".join(f"{number} {number * number} {number % 7}" for number in range(90))
     faces = " ".join(f"{number} {number + 1} {number + 2}" for number in range(88))
-    hx.dump(hx.loads(LONG % (points, faces), "hymeko").mechanism, tmp_path / "r.usda")
+    hx.dump(hx.loads(LONG % (points, faces), "hymeko"), tmp_path / "r.usda")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     assert (tmp_path / "r_meshes.usdc").exists()
     assert [prim.GetName() for prim in stage.Traverse() if prim.HasAPI(UsdPhysics.RigidBodyAPI)] == ["a", "b"]

@@ -89,7 +89,7 @@ def test_a_point_that_is_not_as_it_was_is_a_loss(tmp_path: Path, monkeypatch: py
 
 @pytest.mark.unread("HX204")
 def test_on_standard_output_a_model_stands_alone(tmp_path: Path) -> None:
-    text = hx.dumps(hx.load(stage(tmp_path / "home")).mechanism, "mjcf", keep="inside")
+    text = hx.dumps(hx.load(stage(tmp_path / "home")), "mjcf", keep="inside")
     assert "ball" in text
     assert "ball.obj" not in text
 

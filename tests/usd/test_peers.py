@@ -107,7 +107,7 @@ def test_newton_leads_cables_through_our_stages_as_through_the_source(tmp_path: 
     sources = files_of("mjcf", names("tendon pulley_fixed_site_wrap arm21 stacker"))
     stages = [tmp_path / f"{path.stem}.usda" for path in sources]
     for source, stage in zip(sources, stages, strict=True):
-        hx.dump(hx.load(source).mechanism, stage)
+        hx.dump(hx.load(source), stage)
     answers = NEWTON.run([{"source": str(path), "tendons": True} for path in (*sources, *stages)])
     assert [answer["error"] for answer in answers if "error" in answer] == []
     assert [answer["tendons"] for answer in answers[: len(sources)]] == [answer["tendons"] for answer in answers[len(sources) :]]
@@ -173,7 +173,7 @@ def test_newton_builds_the_same_model_from_our_usd_as_from_the_source(format: st
     jobs = []
     for path in sources:
         out = tmp_path / f"{path.stem}.usda"
-        hx.dump(hx.load(path).mechanism, out)
+        hx.dump(hx.load(path), out)
         jobs += [{"source": str(path)}, {"source": str(out)}]
     answers = NEWTON.run(jobs)
     assert [answer["error"] for answer in answers if "error" in answer] == []

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.corpus
 
 def assert_same_in_usd(robot: Path, folder: Path) -> None:
     stage = folder / "robot.usdc"
-    hx.dump(hx.load(robot).mechanism, stage)
+    hx.dump(hx.load(robot), stage)
     verdict = hx.verify(robot, stage, samples=20)
     assert verdict.checks, verdict.reason
     assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []

@@ -14,7 +14,7 @@ MJCF = """<mujoco><asset><texture name="t" type="2d" file="wood.png"/><material 
 
 
 def stage_of(rgba: str) -> str:
-    return hx.dumps(hx.loads(MJCF.format(rgba=rgba), "mjcf").mechanism, "usd")
+    return hx.dumps(hx.loads(MJCF.format(rgba=rgba), "mjcf"), "usd")
 
 
 def colour(mechanism: Mechanism) -> tuple[float, ...] | None:
