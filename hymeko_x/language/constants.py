@@ -54,9 +54,8 @@ def _in_order(found: Mapping[str, Constant], file: str) -> list[str]:
         return [*TopologicalSorter(uses).static_order()]
     except CycleError as error:
         way = [*reversed(error.args[1])]
-        raise refuse(
-            codes.CIRCULAR_VALUE, f"the value of '{way[0]}' leads back to itself: {' -> '.join(way)}", origin_of(found[way[0]], file)
-        ) from error
+        message, hint = f"the value of '{way[0]}' leads back to itself: {' -> '.join(way)}", "give one of them a number"
+        raise refuse(codes.CIRCULAR_VALUE, message, origin_of(found[way[0]], file), hint=hint) from error
 
 
 def _evaluated(constant: Constant, numbers: Mapping[str, float | str], file: str) -> float | str:
@@ -65,7 +64,8 @@ def _evaluated(constant: Constant, numbers: Mapping[str, float | str], file: str
         return evaluate(constant.text, numbers)
     except ExpressionError as error:
         message = f"const {constant.name} = {constant.text}: {error}"
-        raise refuse(codes.BAD_EXPRESSION, message, origin_of(constant, file)) from error
+        hint = "a constant is arithmetic on plain numbers and other constants: const AREA = pi * R ** 2;"
+        raise refuse(codes.BAD_EXPRESSION, message, origin_of(constant, file), hint=hint) from error
 
 
 def _filled(items: tuple[Item, ...], numbers: Mapping[str, float | str]) -> tuple[Item, ...]:

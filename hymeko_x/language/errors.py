@@ -148,8 +148,12 @@ def _expectation_hint(expected: set[str], token: str, before: str) -> str:
         return "values and parameters are separated by white space or commas"
     if token in ("+", "-", "~") and expected >= {"RPAR", "COMMA"}:
         return "arcs in parentheses are separated by commas: (+ a, - b)"
+    if token == "{" and expected >= {"RPAR", "COMMA"}:
+        return "an arc with a block stands outside of parentheses: + a { x 1 }"
     if before == ":":
         return _BEHIND[before]
+    if token == ";" and expected == {"NAME"}:
+        return "a short name for a path is defined so: using a.b as c;"
     if "RPAR" in expected and "NAME" in expected and "LBRACE" not in expected and token not in _PAIRS:
         return "parameters have names: part(mass=2)"
     if "NAME" in expected and _DIGIT_NAME.fullmatch(token):

@@ -115,7 +115,8 @@ def _imported(path: str, fetch: Fetch, found: Definitions, seen: _Imported, orig
         raise refuse(codes.TOO_LARGE, f"more than {MAX_IMPORTS} files are imported", origin)
     data = next((data for above in ("", "../", "../../") if (data := fetch(above + path)) is not None), None)
     if data is None:
-        raise refuse(codes.UNDEFINED_REFERENCE, f"the imported file '{path}' was not found", origin)
+        hint = "it is looked for beside the text, and in the two folders above"
+        raise refuse(codes.UNDEFINED_REFERENCE, f"the imported file '{path}' was not found", origin, hint=hint)
     items = parse(decode(data, path), path).items
     _import(items, path, fetch, found, seen)
     found.texts.append((posixpath.splitext(posixpath.basename(path))[0], items))
@@ -262,7 +263,8 @@ class Templates:
         """
         name = ".".join(prototype.path)
         if name in chain or len(chain) > MAX_DEPTH:
-            raise self.refuse(node, f"the type '{name}' leads back to itself: {' -> '.join([*chain, name])}")
+            message = f"the type '{name}' leads back to itself: {' -> '.join([*chain, name])}"
+            raise self.refuse(node, message, "one of them stands without a type")
         assert isinstance(prototype.item, Node)
         self.count(node, 1 + len(prototype.item.items))
         given = without_comments(prototype.item).items if copies else self.prototypes.fields_of(prototype.item)

@@ -26,6 +26,29 @@ def test_every_message_belongs_to_a_text() -> None:
     assert len(texts) >= 30
 
 
+OF_THE_NEWER_CONSTRUCTS = """
+    body_in_data joint_in_data element_of_a_block_twice relation_to_nothing reference_in_data_to_nothing path_from_the_root_to_nothing
+    template_of_data_without_parameter copy_of_itself prototype_of_itself
+    value_that_is_not_there list_with_a_missing_value values_in_a_circle weight_by_reference_to_nothing arc_to_a_value change_of_nothing
+    open_value_of_a_body open_weight_of_a_joint open_axis
+    shared_ball shared_block_with_a_mass shared_ratio_of_the_first shared_ratio_of_zero shared_ratio_without_motion two_parents_of_two
+    spring_of_another_motion spring_of_a_compound damper_of_another_motion
+    constant_twice constant_unknown constant_with_a_unit constant_without_value constants_in_a_circle
+    group_not_closed group_with_a_block group_without_comma using_without_name using_without_path short_import_missing
+"""
+"""Nested graphs, references, values left open, joints of several bodies, springs on edges, and the dialect of 2026."""
+
+
+@pytest.mark.parametrize("name", OF_THE_NEWER_CONSTRUCTS.split())
+def test_a_message_shows_the_line_the_place_and_what_to_do(name: str) -> None:
+    message, line, caret, hint = (Path(__file__).parent / "broken" / f"{name}.txt").read_text(encoding="utf-8").splitlines()
+    number = int(message.split(":")[1])
+    source = (Path(__file__).parent / "broken" / f"{name}.hymeko").read_text(encoding="utf-8").split("\n")[number - 1]
+    assert line == f"{number:5} | {source}"
+    assert set(caret.removeprefix("      | ")) <= {" ", "^"}
+    assert hint.startswith("  hint: ")
+
+
 class Folder(NoFiles):
     """Files by name."""
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.formats.hymeko import ALIASES, LUMPED_UNITS, TARGETS
+from hymeko_x.formats.hymeko import ALIASES, LUMPED_UNITS, TARGETS, TURNING
 from hymeko_x.formats.hymeko.units import unit_exponents
 from hymeko_x.ir import lumped, parts
 from hymeko_x.language.syntax import Field, Quantity
@@ -60,9 +60,21 @@ def with_compliance(
         if len(dofs) != 1:
             message = f"{joint} has {len(dofs)} dofs; a {key.kind} on its edge acts along exactly one"
             raise builder.reader.refuse(arc, message, hint="give the dof its stiffness and damping in its own block")
+        _check_domain(builder, arc, key, joint, dofs[0])
         builder.folded.add(key)
         dofs = (_with(dofs[0], builder.vertices[key]),)
     return dofs
+
+
+def _check_domain(builder: HymekoBuilder, arc: ArcItem, key: Id, joint: Id, dof: parts.Dof) -> None:
+    """Raises: Refusal (HX062) for a spring or damper of a translation at a joint that turns, and the other way around."""
+    word, *units = LUMPED_UNITS[key.kind]
+    own = DOMAINS[dof.kind in TURNING]
+    element = builder.vertices[key]
+    assert isinstance(element, lumped.Spring | lumped.Damper)
+    if element.domain and element.domain != own:
+        message = f"{key} is one of {element.domain}, and {joint} moves by {own}"
+        raise builder.reader.refuse(arc, message, hint=f"its '{word}' is in {units[DOMAINS.index(own)]} there")
 
 
 def _with(dof: parts.Dof, element: object) -> parts.Dof:

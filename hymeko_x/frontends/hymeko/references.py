@@ -148,7 +148,8 @@ class _Resolver:
         name = holder.name
         if name in active:
             way = " -> ".join([*active[active.index(name) :], name])
-            raise refuse(codes.CIRCULAR_VALUE, f"the value of '{name}' leads back to itself: {way}", self._builder.reader.origin(item))
+            message, hint = f"the value of '{name}' leads back to itself: {way}", "give one of them a value"
+            raise refuse(codes.CIRCULAR_VALUE, message, self._builder.reader.origin(item), hint=hint)
         value = holder.field.value
         assert value is not None
         if isinstance(value, Ref) and len(value.path) == 1 and not value.direction:

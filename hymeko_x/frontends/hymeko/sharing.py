@@ -79,7 +79,8 @@ def _split(element: Element, ends: _Ends, reader: ValueReader) -> list[Element]:
     node = element.node
     first, *others = ends.children
     if first.items:
-        raise reader.refuse(first, f"the first child of '{node.name}' moves by the joint's own coordinate; '{RATIO}' is for the others")
+        message = f"the first child of '{node.name}' moves by the joint's own coordinate; '{RATIO}' is for the others"
+        raise reader.refuse(first, message, hint="the child that moves by 1 stands first")
     left_out = {id(arc) for arc in (*ends.parents, *ends.children)}
     own = [item for item in node.items if id(item) not in left_out]
     common = [item for item in own if id(item) not in map(id, ends.compliant) and not _is_of_first(item)]
@@ -119,7 +120,8 @@ def _ratio(arc: ArcItem, reader: ValueReader) -> float:
     ratio = 1.0
     for item in arc.items:
         if not is_field(item, (RATIO,)):
-            raise reader.refuse(item, f"the block of the arc to '{arc.ref.dotted}' holds a '{RATIO}' alone")
+            hint = f"the fields of the joint stand in its own block, those of '{arc.ref.dotted}' in that body's"
+            raise reader.refuse(item, f"the block of the arc to '{arc.ref.dotted}' holds a '{RATIO}' alone", hint=hint)
         ratio = reader.number(item.value, "", item)
         if not ratio:
             raise reader.refuse(item, f"a {RATIO} of 0 would not move '{arc.ref.dotted}'", hint="a fixed joint holds it")
@@ -133,7 +135,8 @@ def follow(builder: HymekoBuilder, key: Id, leader: ArcItem, dofs: tuple[parts.D
     """
     ratio = builder.reader.numbers(leader.weight, "", leader, 1)[0]
     if not dofs and ratio != 1.0:
-        raise builder.reader.refuse(leader, f"'{leader.ref.dotted}' holds its children without motion, and a '{RATIO}' needs one")
+        message = f"'{leader.ref.dotted}' holds its children without motion, and a '{RATIO}' needs one"
+        raise builder.reader.refuse(leader, message, hint="leave it out, or give the joint another type")
     if not dofs:
         return dofs
     if len(dofs) > 1 or dofs[0].kind not in _KINDS:

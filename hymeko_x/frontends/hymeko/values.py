@@ -57,7 +57,7 @@ class ValueReader(Struct):
                 message = f"{name_of(item)} takes a unit of {dimension}, and '{value.unit}' is {f'one of {kind}' if kind else 'none'}"
                 raise self.refuse(item, message, hint=f"such as {', '.join(fitting_units(dimension))}")
             return value.number * factor
-        raise self.refuse(item, f"{name_of(item)} takes a number, not {describe(value)}")
+        raise self.refuse(item, f"{name_of(item)} takes a number, not {describe(value)}", hint=_hint(value))
 
     def whole(self, value: Value | None, item: Item) -> int:
         """A whole number."""
@@ -69,7 +69,7 @@ class ValueReader(Struct):
     def numbers(self, value: Value | None, dimension: str, item: Item, count: int | None = None) -> tuple[float, ...]:
         """A list of numbers in SI, of the given length if there is one."""
         if not is_list(value):
-            raise self.refuse(item, f"{name_of(item)} takes a list of numbers, not {describe(value)}")
+            raise self.refuse(item, f"{name_of(item)} takes a list of numbers, not {describe(value)}", hint=_hint(value))
         values = tuple(self.number(part, dimension, item) for part in value)
         if count is not None and len(values) != count:
             raise self.refuse(item, f"{name_of(item)} takes {count} numbers, not {len(values)}")
@@ -185,6 +185,11 @@ def describe(value: Value | None) -> str:
     if is_list(value):
         return "a list"
     return f"the number {value}" if isinstance(value, float) else "an open question"
+
+
+def _hint(value: Value | None) -> str:
+    """What to write instead of a value that is left open."""
+    return "data alone leaves values open; a field that is not known is left out" if isinstance(value, Query) else ""
 
 
 def name_of(item: Item) -> str:
