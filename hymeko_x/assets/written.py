@@ -115,12 +115,12 @@ def _subset_materials(mechanism: Mechanism, mesh: Mesh, view: ShapeView | None, 
     names: set[str] = set()
     found = []
     for material, faces in [(view.material, rest), *known] if rest else known:
-        part = mechanism.graph.vertices.get(material) if material is not None else None
+        part = mechanism.part(material, Material)
         stem = _harmless(material.name if material is not None else "") or _MATERIAL
         name = free_name(stem, names.__contains__, "_")
         names.add(name)
         own = view.shape.rgba if faces is rest else None
-        rgba = own or (part.rgba if isinstance(part, Material) else None)
+        rgba = own or (part.rgba if part is not None else None)
         image = images.get(material) if own is None and mesh.texcoords and material is not None else None
         found.append(_MtlMaterial(name, rgba, None if image is None else _path_to(image), faces))
     return tuple(found)

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
-from hymeko_x.ir.mechanism import ROOT, WORLD, Id, pose_weight
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, pose_weight
 from hymeko_x.ir.parts import Body, DofKind, Joint, Mesh, Mount, Sense, Shape, Stance
 from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
 from hymeko_x.rewrite.efforts import actuator_efforts
@@ -88,7 +88,7 @@ def _keyframes(before: Mechanism, after: Mechanism) -> Iterator[Id]:
     row = formats.of_source(after)
     kept = dict(formats.loaded(row.poses)(after)) if row is not None and row.poses is not None else {}
     for key, _, arcs in before.edges(Stance) if kept else ():
-        pose = next((arc.target for arc in arcs if arc.sign > 0), None)
+        pose = end_of(arcs, 1)
         if pose is not None and all(kept.get(pose.name, {}).get(arc.target) == arc.weight for arc in arcs if arc.sign == 0):
             yield from (key, pose)
 
@@ -121,9 +121,9 @@ def _needs_no_weight(mechanism: Mechanism, shape: Id, field: str) -> bool:
     edge = mechanism.graph.edges.get(shape)
     if edge is None or not isinstance(edge.data, Shape) or getattr(edge.data, field) is not None:
         return False
-    owner = next((arc.target for arc in edge.arcs if arc.sign > 0), WORLD)
-    body = mechanism.graph.vertices.get(owner)
-    inertial = body.inertial if isinstance(body, Body) else None
+    owner = end_of(edge.arcs, 1) or WORLD
+    body = mechanism.part(owner, Body)
+    inertial = None if body is None else body.inertial
     return owner == WORLD or (inertial is not None and inertial.mass is not None and inertial.tensor is not None)
 
 

@@ -246,6 +246,11 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
             raise TypeError(f"{key} carries {type(data).__name__}, not {part.__name__}")
         return data
 
+    def part(self, key: Id | None, part: type[P]) -> P | None:
+        """The part of a vertex; None where there is no such vertex, or it carries another kind of part."""
+        data = None if key is None else self.graph.vertices.get(key)
+        return data if isinstance(data, part) else None
+
     def origin(self, key: Id) -> Origin | None:
         """Where the element stands in its source, if known."""
         return self.origins.get(key)
@@ -302,6 +307,12 @@ def _ends(arcs: tuple[RobotArc, ...]) -> tuple[RobotArc | None, RobotArc | None]
     if len(arcs) == 2 and arcs[0].sign > 0 > arcs[1].sign:
         return arcs
     return _end(arcs, 1), _end(arcs, -1)
+
+
+def end_of(arcs: tuple[RobotArc, ...], sign: int) -> Id | None:
+    """The element to which the first arc of this sign leads."""
+    arc = _end(arcs, sign)
+    return None if arc is None else arc.target
 
 
 def pose_weight(arc: RobotArc) -> Pose:

@@ -11,7 +11,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import listed
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.kinematics import dof_number
-from hymeko_x.ir.mechanism import numbers_weight
+from hymeko_x.ir.mechanism import end_of, numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Drive, Joint, Tendon
 
 if TYPE_CHECKING:
@@ -55,8 +55,7 @@ def actuator_efforts(mechanism: Mechanism) -> Mapping[tuple[Id, int], float]:
     """
     spans: dict[tuple[Id, int], Span] = {}
     for _, _, arcs in mechanism.edges(Drive):
-        driving = [mechanism.graph.vertices.get(arc.target) for arc in arcs if arc.sign > 0]
-        actuator = next((part for part in driving if isinstance(part, Actuator)), None)
+        actuator = mechanism.part(end_of(arcs, 1), Actuator)
         if actuator is None or actuator.kind in _NO_MOTOR:
             continue
         low, high = force_span(actuator)

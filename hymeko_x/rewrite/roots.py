@@ -25,8 +25,8 @@ _WORLD_LINK = Id("body", WORLD.name)
 
 def put_world_link_into_world(mechanism: Mechanism, context: Context) -> Mechanism:
     """A root link called ``world`` without a mass is the world; any other body of that name is renamed."""
-    body = mechanism.graph.vertices.get(_WORLD_LINK)
-    if not isinstance(body, Body):
+    body = mechanism.part(_WORLD_LINK, Body)
+    if body is None:
         return mechanism
     if _WORLD_LINK not in mechanism.parent_joint and is_massless(body):
         return rename(with_world(mechanism), {_WORLD_LINK: WORLD})

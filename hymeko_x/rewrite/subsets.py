@@ -55,8 +55,8 @@ _Piece = tuple["Id | None", tuple[int, ...]]
 
 def _pieces(mechanism: Mechanism, view: ShapeView, subsets: tuple[SubsetView, ...]) -> Iterator[_Piece]:
     """The triangles of a mesh by material, first what shows that of the shape; nothing where the mesh does not hold them itself."""
-    mesh = mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
-    if not isinstance(mesh, Mesh) or not isinstance(view.shape.geometry, MeshShape):
+    mesh = mechanism.part(view.mesh, Mesh)
+    if mesh is None or not isinstance(view.shape.geometry, MeshShape):
         return
     count = len(mesh.faces) // 3 if mesh.uri is None and _are_rows(mesh.faces, mesh.vertices, 3) else 0
     rest = dict.fromkeys(range(count))
@@ -140,8 +140,8 @@ def part_meshes_by_looks(mechanism: Mechanism, _context: Context) -> Mechanism:
     meshes: dict[Id, Mesh] = {}
     edges: dict[Id, RobotEdge] = {}
     for view in mechanism.every_shape():
-        mesh = mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
-        if view.mesh is None or not isinstance(mesh, Mesh) or mesh.uri is not None or view.shape.role is not Role.VISUAL:
+        mesh = mechanism.part(view.mesh, Mesh)
+        if view.mesh is None or mesh is None or mesh.uri is not None or view.shape.role is not Role.VISUAL:
             continue
         own = tuple((subset.faces, subset.material) for subset in mechanism.subsets.get(view.id, ()))
         known = pieces.setdefault(view.mesh, {})

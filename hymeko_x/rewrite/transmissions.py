@@ -106,8 +106,8 @@ def _moved_otherwise(mechanism: Mechanism) -> set[Id]:
 
 
 def _is_transmission(mechanism: Mechanism, actuator: Id) -> bool:
-    part = mechanism.graph.vertices.get(actuator)
-    return isinstance(part, Actuator) and part.kind == "transmission"
+    part = mechanism.part(actuator, Actuator)
+    return part is not None and part.kind == "transmission"
 
 
 def _command(mechanism: Mechanism, key: Id, drive: Drive, arcs: tuple[RobotArc, ...]) -> _Command | None:

@@ -9,6 +9,7 @@ from hymeko_x.formats.mjcf.mesh_order import mesh_order
 from hymeko_x.formats.mjcf.places import MATERIAL, MESH
 from hymeko_x.formats.mjcf.words import below
 from hymeko_x.ir.graph import Arc
+from hymeko_x.ir.mechanism import end_of
 from hymeko_x.ir.parts import Layer, Material, Mesh, Texture
 from hymeko_x.xml.printing import Tag
 
@@ -100,8 +101,8 @@ def _layers(sheet: MjcfSheet) -> dict[Id, list[tuple[str, str]]]:
     """For each material its textures with their use; a layer that lacks one of both is left out."""
     found: dict[Id, list[tuple[str, str]]] = {}
     for _, layer, arcs in sheet.mechanism.edges(Layer):
-        texture = next((arc.target for arc in arcs if arc.sign > 0), None)
-        material = next((arc.target for arc in arcs if arc.sign < 0), None)
+        texture = end_of(arcs, 1)
+        material = end_of(arcs, -1)
         if material is not None and texture is not None and texture in sheet.mechanism.graph.vertices:
             found.setdefault(material, []).append((layer.use, sheet.reference(Arc(texture))))
     return found

@@ -10,7 +10,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import urdf as urdf_words
 from hymeko_x.formats.urdf import ros2_control as words
-from hymeko_x.ir.mechanism import ROOT, Extra, numbers_weight
+from hymeko_x.ir.mechanism import ROOT, Extra, end_of, numbers_weight
 from hymeko_x.ir.parts import Actuator, Coupling, Drive, Stance
 from hymeko_x.ir.values import number_text, numbers_text
 from hymeko_x.xml.printing import Tag, ready
@@ -52,9 +52,9 @@ def _commands(mechanism: Mechanism) -> tuple[dict[Id, list[Command]], list[Id]]:
     found: dict[Id, list[Command]] = {}
     left: list[Id] = []
     for _, drive, arcs in mechanism.edges(Drive):
-        key = next((arc.target for arc in arcs if arc.sign > 0), None)
-        part = mechanism.graph.vertices.get(key) if key is not None else None
-        if key is None or not isinstance(part, Actuator) or part.kind == "transmission":
+        key = end_of(arcs, 1)
+        part = mechanism.part(key, Actuator)
+        if key is None or part is None or part.kind == "transmission":
             continue
         targets = [arc for arc in arcs if arc.sign < 0]
         view = mechanism.joints.get(targets[0].target) if len(targets) == 1 and not drive.kind else None

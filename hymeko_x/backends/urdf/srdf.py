@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import srdf
-from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, numbers_weight
+from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, end_of, numbers_weight
 from hymeko_x.ir.parts import Body, Contact, PoseSet, Stance
 from hymeko_x.ir.values import numbers_text
 from hymeko_x.rewrite.roots import without
@@ -78,9 +78,9 @@ def as_virtual_joint(mechanism: Mechanism, held: JointView) -> Mechanism:
 def _poses(printed: Mechanism) -> Iterator[Tag]:
     """The named poses: of each joint with one coordinate its value in rad or m."""
     for _, _, arcs in printed.edges(Stance):
-        key = next((arc.target for arc in arcs if arc.sign > 0), None)
-        part = printed.graph.vertices.get(key) if key is not None else None
-        if key is None or not isinstance(part, PoseSet):
+        key = end_of(arcs, 1)
+        part = printed.part(key, PoseSet)
+        if key is None or part is None:
             continue
         tag = Tag("group_state", {"name": key.name, "group": part.group or srdf.ALL})
         for arc in arcs:

@@ -12,7 +12,7 @@ from hymeko_x.backends.usd.sheet import T, apply, dof_of, point, prim_of, put
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import actuators as table
 from hymeko_x.formats.usd import joints
-from hymeko_x.ir.mechanism import numbers_weight
+from hymeko_x.ir.mechanism import end_of, numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Drive
 
 if TYPE_CHECKING:
@@ -39,17 +39,11 @@ def write_drives(sheet: UsdSheet) -> None:
     driven_prims: set[Any] = set()
     limited = _limited_dofs(sheet)
     for key, _, arcs in sheet.mechanism.edges(Drive):
-        source = next((arc.target for arc in arcs if arc.sign > 0), None)
+        source = end_of(arcs, 1)
         driven = next((arc for arc in arcs if arc.sign < 0), None)
-        actuator = sheet.mechanism.graph.vertices.get(source) if source is not None else None
+        actuator = sheet.mechanism.part(source, Actuator)
         found = dof_of(sheet, driven) if driven is not None else None
-        if (
-            found is None
-            or driven is None
-            or source is None
-            or not isinstance(actuator, Actuator)
-            or not _is_drive(sheet, source, actuator)
-        ):
+        if found is None or driven is None or source is None or actuator is None or not _is_drive(sheet, source, actuator):
             continue
         spec, axis, dof = found
         instance = axis or _instance(dof)
@@ -108,10 +102,10 @@ def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof, gear: f
 def write_actuators(sheet: UsdSheet) -> None:
     """Each actuator that no drive represents, with its targets: as a general one, where that is known. Servos of joints are drives."""
     for key, drive, arcs in sheet.mechanism.edges(Drive):
-        source = next((arc.target for arc in arcs if arc.sign > 0), None)
-        actuator = sheet.mechanism.graph.vertices.get(source) if source is not None else None
+        source = end_of(arcs, 1)
+        actuator = sheet.mechanism.part(source, Actuator)
         targets = [(arc, _target(sheet, arc)) for arc in arcs if arc.sign < 0]
-        if source is None or not isinstance(actuator, Actuator) or source in sheet.paths:
+        if source is None or actuator is None or source in sheet.paths:
             continue
         if not targets or any(target is None for _, target in targets):
             continue

@@ -100,8 +100,8 @@ def note_body_shapes(sheet: UsdSheet) -> None:
             continue
         prim = gprim_of(mechanism, view)
         pose = gprim_pose(view, prim)
-        mesh = mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
-        scale = prim.scale if prim is not None else mesh.scale if isinstance(mesh, Mesh) else (1.0, 1.0, 1.0)
+        mesh = mechanism.part(view.mesh, Mesh)
+        scale = prim.scale if prim is not None else mesh.scale if mesh is not None else (1.0, 1.0, 1.0)
         is_here = math.hypot(*pose.xyz) < _NEAR and rotation_angle(pose.quat, NO_ROTATION) < _NEAR
         if is_here and all(scale):
             sheet.body_shapes[key] = view.id

@@ -8,6 +8,7 @@ from pxr import Gf, Sdf
 
 from hymeko_x.backends.usd.sheet import T, apply, connect, point, put
 from hymeko_x.formats import usd as words
+from hymeko_x.ir.mechanism import end_of
 from hymeko_x.ir.parts import Layer, Material, Texture
 
 if TYPE_CHECKING:
@@ -30,10 +31,10 @@ def _images(sheet: UsdSheet) -> dict[Id, tuple[Id, Texture]]:
     """The texture that colours each material."""
     found: dict[Id, tuple[Id, Texture]] = {}
     for _, layer, arcs in sheet.mechanism.edges(Layer):
-        texture = next((arc.target for arc in arcs if arc.sign > 0), None)
-        material = next((arc.target for arc in arcs if arc.sign < 0), None)
-        part = sheet.mechanism.graph.vertices.get(texture) if texture is not None else None
-        if layer.use == "rgb" and texture is not None and material is not None and isinstance(part, Texture) and part.uri:
+        texture = end_of(arcs, 1)
+        material = end_of(arcs, -1)
+        part = sheet.mechanism.part(texture, Texture)
+        if layer.use == "rgb" and texture is not None and material is not None and part is not None and part.uri:
             found.setdefault(material, (texture, part))
     return found
 

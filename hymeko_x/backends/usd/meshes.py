@@ -31,8 +31,8 @@ _ST = "primvars:st"
 
 def write_mesh_shape(sheet: UsdSheet, spec: Any, view: ShapeView, users: dict[Id, int], shared: dict[Id, Any]) -> Vec3 | None:
     """The mesh itself, or a reference to where it is; without points the prim stays a mere place."""
-    mesh = sheet.mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
-    if view.mesh is None or not isinstance(mesh, Mesh):
+    mesh = sheet.mechanism.part(view.mesh, Mesh)
+    if view.mesh is None or mesh is None:
         return None
     if view.mesh not in sheet.triangles:
         sheet.triangles[view.mesh] = surface_of(mesh)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Vt
 
 from hymeko_x.backends.usd.sheet import T, apply, put
 from hymeko_x.formats import usd as words
-from hymeko_x.ir.mechanism import WORLD, pose_weight
-from hymeko_x.ir.parts import Camera, Frame, Light, Mount, Tendon
+from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.ir.parts import Camera, Frame, Light, Tendon
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import Prim, UsdSheet
@@ -25,20 +26,18 @@ def write_mounts(sheet: UsdSheet) -> None:
     A site of a cable is a small ball with purpose ``guide``, as MuJoCo's converter writes sites: Newton leads cables through shapes alone.
     """
     knots = {arc.target for _, _, arcs in sheet.mechanism.edges(Tendon) for arc in arcs if arc.target.kind == "frame"}
-    for key, _, arcs in sheet.mechanism.edges(Mount):
-        body = next((arc for arc in arcs if arc.sign > 0), None)
-        mounted = next((arc for arc in arcs if arc.sign < 0), None)
-        part = sheet.mechanism.graph.vertices.get(mounted.target) if mounted else None
-        if body is None or mounted is None or not isinstance(part, Frame | Camera | Light) or mounted.target in sheet.paths:
+    for view in chain.from_iterable(sheet.mechanism.mounts.values()):
+        part = sheet.mechanism.graph.vertices.get(view.thing)
+        if not isinstance(part, Frame | Camera | Light) or view.thing in sheet.paths:
             continue
-        home = sheet.root if body.target == WORLD else sheet.paths.get(body.target)
+        home = sheet.root if view.body == WORLD else sheet.paths.get(view.body)
         if home is None:
             continue
-        spec = sheet.add_prim(mounted.target, home, _type_of(part), below=body.target != WORLD)
-        sheet.paths[key] = spec.path
-        sheet.set_pose(spec, pose_weight(body), on=body.target)
+        spec = sheet.add_prim(view.thing, home, _type_of(part), below=view.body != WORLD)
+        sheet.paths[view.id] = spec.path
+        sheet.set_pose(spec, view.pose, on=view.body)
         _write_mounted(spec, part)
-        if isinstance(part, Frame) and mounted.target in knots and sheet.mechanism.notation(mounted.target, words.PATH) is None:
+        if isinstance(part, Frame) and view.thing in knots and sheet.mechanism.notation(view.thing, words.PATH) is None:
             _write_ball(spec, part.size[0] if part.size and part.size[0] > 0.0 else _SITE_SIZE)
 
 

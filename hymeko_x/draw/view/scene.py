@@ -128,21 +128,21 @@ def _colour(mechanism: Mechanism, view: ShapeView) -> tuple[float, float, float,
     if view.shape.rgba is not None:
         return view.shape.rgba
     for key in (view.material, *(subset.material for subset in mechanism.subsets.get(view.id, ()))):
-        material = None if key is None else mechanism.graph.vertices.get(key)
-        if isinstance(material, Material) and material.rgba is not None:
+        material = mechanism.part(key, Material)
+        if material is not None and material.rgba is not None:
             return material.rgba
     return None
 
 
 def _scale(mechanism: Mechanism, view: ShapeView) -> Array:
-    mesh = None if view.mesh is None else mechanism.graph.vertices.get(view.mesh)
-    return np.array(mesh.scale if isinstance(mesh, Mesh) else (1.0, 1.0, 1.0))
+    mesh = mechanism.part(view.mesh, Mesh)
+    return np.array((1.0, 1.0, 1.0) if mesh is None else mesh.scale)
 
 
 def _submeshes(mechanism: Mechanism, view: ShapeView, files: Files) -> tuple[Submesh, ...]:
     """The triangles of a shape's mesh; nothing where they cannot be read."""
-    mesh = None if view.mesh is None else mechanism.graph.vertices.get(view.mesh)
-    if not isinstance(mesh, Mesh):
+    mesh = mechanism.part(view.mesh, Mesh)
+    if mesh is None:
         return ()
     if mesh.vertices and mesh.uri is None:
         return (inline_part(mesh.vertices, mesh.faces),) if mesh.faces else ()

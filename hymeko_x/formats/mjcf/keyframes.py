@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from hymeko_x.formats.mjcf import NAME
 from hymeko_x.formats.mjcf.tree import parse_text, verbatim
-from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism, numbers_weight
+from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism, end_of, numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Stance
 from hymeko_x.ir.values import compose, inverse, numbers_text
 from hymeko_x.xml.tree import read_numbers
@@ -70,7 +70,7 @@ def with_poses(mechanism: Mechanism) -> Mechanism:
     widths = {key: len(rest) for key, rest in _slots(mechanism, "qpos")}
     new = []
     for _, _, arcs in mechanism.edges(Stance):
-        pose = next((arc.target for arc in arcs if arc.sign > 0), None)
+        pose = end_of(arcs, 1)
         if pose is not None and pose.name not in known:
             values = {("qpos", arc.target): numbers_weight(arc) for arc in arcs if arc.sign == 0}
             new.append(Key({"name": pose.name}, {(of, key): found for (of, key), found in values.items() if widths.get(key) == len(found)}))

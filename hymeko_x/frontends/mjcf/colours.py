@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from hymeko_x.formats.mjcf.classes import Classes, merge
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.formats.mjcf.words import NAME
-from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.mechanism import ROOT, end_of
 from hymeko_x.ir.parts import Layer, Material, Texture
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def _patterned(mechanism: Mechanism) -> dict[Id, tuple[Id, Rgba]]:
     found: dict[Id, tuple[Id, Rgba]] = {}
     for key, layer, arcs in mechanism.edges(Layer):
         mean = next((means.get(arc.target) for arc in arcs if arc.sign > 0), None)
-        material = next((arc.target for arc in arcs if arc.sign < 0), None)
+        material = end_of(arcs, -1)
         if layer.use == "rgb" and mean is not None and material is not None:
             found[key] = material, mean
     return found

@@ -6,6 +6,7 @@ leave values to that format's engine, like inertias to the shapes; they are comp
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
@@ -222,13 +223,8 @@ def _end(arc: RobotArc, numbers: Mapping[Id, int], frames: Placed) -> tuple[int,
 
 def _frames(mechanism: Mechanism, numbers: Mapping[Id, int]) -> Placed:
     """The body of each mounted element, and its pose there."""
-    found: dict[Id, tuple[int, Array]] = {}
-    for _, _, arcs in mechanism.edges(parts.Mount):
-        body = next((arc for arc in arcs if arc.sign > 0), None)
-        mounted = next((arc for arc in arcs if arc.sign < 0), None)
-        if body is not None and mounted is not None and body.target in numbers:
-            found[mounted.target] = numbers[body.target], _matrix(pose_weight(body))
-    return found
+    views = chain.from_iterable(mechanism.mounts.values())
+    return {view.thing: (numbers[view.body], _matrix(view.pose)) for view in views if view.body in numbers}
 
 
 def _closure(loop: parts.Loop) -> tuple[str, str, Array]:
