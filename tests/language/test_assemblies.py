@@ -7,32 +7,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import hymeko_x as hx
-from hymeko_x.backends.hymeko import write
-from hymeko_x.diagnostics import Report
-from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.names import Names, rename
-from hymeko_x.rewrite.context import Options
-from hymeko_x.source import Source
 from hymeko_x.testing import mechanisms
-
-
-def read_text(text: str) -> Mechanism:
-    report = Report()
-    mechanism = read(Source("robot.hymeko", text.encode()), report).mechanism
-    assert not report.diagnostics, [str(diagnostic) for diagnostic in report]
-    return mechanism
-
-
-def canonical(text: str) -> str:
-    """The text as hymeko-x prints it, which says the same."""
-    mechanism = read_text(text)
-    printed = write(mechanism, Options(), Report()).main.decode()
-    back = read_text(printed)
-    assert back == mechanism
-    assert (back.layout, back.extras) == (mechanism.layout, mechanism.extras)
-    return printed
-
+from tests.language.printed import canonical, read_text, text_of
 
 LEG = """
 robot : robot {
@@ -135,11 +113,11 @@ def _mechanisms(draw: st.DrawFn) -> Mechanism:
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(_mechanisms())
 def test_whatever_names_begin_alike_reads_back_equal(mechanism: Mechanism) -> None:
-    printed = write(mechanism, Options(), Report()).main
-    back = read(Source("robot.hymeko", printed), Report()).mechanism
+    printed = text_of(mechanism)
+    back = read_text(printed)
     assert back == mechanism
     assert back.layout[: len(mechanism.layout)] == mechanism.layout
-    assert write(back, Options(), Report()).main == printed
+    assert text_of(back) == printed
 
 
 def test_a_template_is_not_named_like_a_type_of_the_vocabulary() -> None:

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from hypothesis import HealthCheck, given, settings
 
-from hymeko_x.backends.hymeko import write
-from hymeko_x.diagnostics import Report
-from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.graph import Hypergraph
@@ -14,22 +11,10 @@ from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import ArcItem, Document, Field, Import, Item, Node
-from hymeko_x.rewrite.context import Options
-from hymeko_x.source import Source
 from hymeko_x.testing import DOCUMENTS, mechanisms
+from tests.language.printed import read_text, text_of
 
 FEW = settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
-
-
-def text_of(mechanism: Mechanism) -> str:
-    return write(mechanism, Options(), Report()).main.decode()
-
-
-def read_text(text: str) -> Mechanism:
-    report = Report()
-    mechanism = read(Source("robot.hymeko", text.encode()), report).mechanism
-    assert not report.diagnostics, [str(diagnostic) for diagnostic in report]
-    return mechanism
 
 
 @FEW

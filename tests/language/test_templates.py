@@ -7,9 +7,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from hymeko_x.backends.hymeko import write
-from hymeko_x.diagnostics import Report
-from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, RobotArc, RobotEdge
@@ -17,21 +14,8 @@ from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import VertexPart
 from hymeko_x.ir.values import Pose
 from hymeko_x.language.printer import print_text
-from hymeko_x.rewrite.context import Options
-from hymeko_x.source import Source
 from hymeko_x.testing import mechanisms
-
-
-def canonical(text: str) -> str:
-    """The text as hymeko-x prints it, which says the same."""
-    mechanism = read(Source("robot.hymeko", text.encode()), Report()).mechanism
-    printed = write(mechanism, Options(), Report()).main
-    report = Report()
-    back = read(Source("robot.hymeko", printed), report).mechanism
-    assert not report.diagnostics
-    assert (back, back.layout, back.extras) == (mechanism, mechanism.layout, mechanism.extras)
-    assert write(back, Options(), Report()).main == printed
-    return printed.decode()
+from tests.language.printed import canonical, read_text, text_of
 
 
 def leg(side: str, sign: str, file: str = "shin", lower: str = "-10") -> str:
@@ -179,14 +163,14 @@ def _twins(draw: st.DrawFn) -> Mechanism:
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(_twins())
 def test_whatever_repeats_reads_back_equal(mechanism: Mechanism) -> None:
-    printed = write(mechanism, Options(), Report()).main
-    back = read(Source("robot.hymeko", printed), Report()).mechanism
+    printed = text_of(mechanism)
+    back = read_text(printed)
     assert back == mechanism
-    assert write(back, Options(), Report()).main == printed
+    assert text_of(back) == printed
 
 
 def test_parameters_called_like_formats_keep_their_place() -> None:
     said = (("urdf", 0.0), ("base", 0.0), ("limit", -1.7976931348623157e308))
     edges: dict[Id, RobotEdge] = {Id("relation", name): Edge(parts.Relation(said), (Arc(Id("body", "a")),)) for name in "wxyz"}
     mechanism = Mechanism("r", Hypergraph({Id("body", "a"): parts.Body()}, edges))
-    assert read(Source("robot.hymeko", write(mechanism, Options(), Report()).main), Report()).mechanism == mechanism
+    assert read_text(text_of(mechanism)) == mechanism
