@@ -13,6 +13,7 @@ from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.ir.mechanism import WORLD, Id
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Body, Mesh, Texture
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.landmarks import NAMED
@@ -22,7 +23,7 @@ from hymeko_x.residue.realign import with_new_names, with_old_names
 from hymeko_x.source import PackageFiles
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Set
 
     from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
@@ -33,6 +34,10 @@ if TYPE_CHECKING:
 _BASES = ("fixed", "free")
 _ACTUATORS = ("none", "motor", "position", "velocity")
 _ASSETS = ("copy", "reference")
+_PLACING = frozenset({"drive", "mount", "sense"})
+"""The kinds of edges that are called as what they place."""
+_LIKE_LINKS = frozenset({"joint", "frame", "loop"})
+"""The kinds of elements that share their names with links in some formats."""
 
 
 class Guess(NamedTuple):
@@ -44,34 +49,60 @@ class Guess(NamedTuple):
     distance: int
 
 
-class Conversion:
-    """The conversion of ORIGINAL into the format of EDITED, made again."""
+class Left(NamedTuple):
+    """The edits that did not arrive, in words; ``made_names`` are of elements whose names the format of ORIGINAL makes."""
 
-    def __init__(
-        self, mechanism: Mechanism, source: Source, edited: Source, format: Format, home: Format, report: Report, notes: Report
-    ) -> None:
-        """``notes`` gets what restoring reports, which matters where there are edits."""
-        self.mechanism, self.source, self.format, self.report, self.notes = mechanism, source, format, report, notes
+    renamed: Set[Id]
+    names: list[str]
+    made_names: list[str]
+    edits: list[str]
+
+
+class Conversion:
+    """The conversion of ORIGINAL into the format of EDITED, made again, and once more after each round of edits."""
+
+    def __init__(self, edited: Source, format: Format, home: Format, options: Options, report: Report) -> None:
+        """``notes`` are what restoring reports, which matters where there are edits."""
+        self.format, self.options, self.report, self.notes = format, options, report, Report()
         since = len(report)
         self.edited = pipeline.read_file(edited, format, report).mechanism
         pipeline.stop_on_errors(report, since, lenient=False)
         self.files, self.home = edited.files, home
         self.folder = os.path.dirname(edited.name) or "."
+        self._used: Guess | None = None
+        self._homes: dict[Id, Id] = {}
 
-    def edited_mechanism(self, options: Options) -> Mechanism:
-        """The mechanism of ORIGINAL with the edits; options that are not given are found out.
+    @property
+    def is_known(self) -> bool:
+        """Whether a round was made, so that the options are known."""
+        return self._used is not None
+
+    def edited_mechanism(self, mechanism: Mechanism, source: Source) -> Mechanism:
+        """The mechanism of ORIGINAL, as its text is now, with the edits; options that are not given are found out in the first round.
 
         Raises: Refusal when ORIGINAL cannot be written in the format.
         """
-        guess = self._found_out(self._guess(options, pipeline.Place(self.folder, package=disk.package_uri(self.folder))))
-        self._report_found(options, guess)
+        self.mechanism, self.source = mechanism, source
+        notes = Report() if self.is_known else self.notes
+        guess = self._again(self._used) if self._used is not None else self._first()
         self._used = guess
-        residue = residue_of(self.mechanism, guess.image)
-        names = renames(self.edited, guess.image)
-        restored = restore(with_old_names(self._with_inertials(guess.image), names), residue, self.notes).mechanism
-        ours = dict(residue.alignment.names)
-        named = with_new_names(restored, {new: ours.get(old, old) for new, old in names.items() if ours.get(old) != WORLD})
+        residue = residue_of(mechanism, guess.image)
+        self._homes = homes = dict(residue.alignment.names)
+        names = self._renames(guess.image)
+        restored = restore(with_old_names(self._with_inertials(guess.image), names.every), residue, notes).mechanism
+        own = {new: homes.get(old, old) for new, old in names.given.items() if not _is_beside(new, old)}
+        named = with_new_names(restored, {new: old for new, old in own.items() if old != WORLD})
         return with_edited_poses(self._with_transmissions(named), guess.image, self.edited, self.format)
+
+    def _first(self) -> Guess:
+        """How the first conversion may have been made."""
+        guess = self._found_out(self._guess(self.options, pipeline.Place(self.folder, package=disk.package_uri(self.folder))))
+        self._report_found(self.options, guess)
+        return guess
+
+    def _again(self, guess: Guess) -> Guess:
+        """The same conversion of what the text is now."""
+        return guess._replace(image=self._converted(self.mechanism, guess.options, guess.place, self.source.files))
 
     def _with_transmissions(self, robot: Mechanism) -> Mechanism:
         """The robot with its transmissions as they were: gains and ranges of the actuators that they become have no place in them."""
@@ -79,22 +110,40 @@ class Conversion:
         changed = {key: part for key, part in own.items() if robot.graph.vertices.get(key, part) != part}
         return robot.replace(vertices=changed)
 
-    def missing(self, source: Source) -> list[str]:
-        """The edits that did not arrive, in words: what the edited file has otherwise than ORIGINAL with its new text, converted again."""
-        changed, edits = self._against(self._used.image)
-        if not changed and not edits:
-            return []
-        home = pipeline.read(source, self.home, Report(), lenient=True)
-        names, rest = self._against(self._converted(home, self._used.options, self._used.place, source.files))
-        new_names = {old: new for new, old in changed.items() if new not in names}
-        known = {(new_names.get(edit.element, edit.element), *edit[1:]) for edit in edits}
-        named = [f"{old.kind} '{old.name}' is called '{new.name}'" for new, old in names.items() if new in changed]
-        return named + [str(edit) for edit in rest if tuple(edit) in known and _is_telling(edit)]
+    def left(self) -> Left:
+        """The edits that did not arrive: what the edited file has otherwise than ORIGINAL as it was converted last."""
+        assert self._used is not None
+        names, rest = self._against(self._used.image)
+        words: dict[bool, list[str]] = {True: [], False: []}
+        for new, old in names.items():
+            words[self._is_made(new, old)].append(f"{old.kind} '{old.name}' is called '{new.name}'")
+        return Left({*names, *names.values()}, words[False], words[True], [str(edit) for edit in rest if _is_telling(edit)])
+
+    def _is_made(self, new: Id, old: Id) -> bool:
+        """Whether a name is one that a format made: of an element without one, or of one beside a link of its name."""
+        home = self._homes.get(old, old)
+        joint = self.mechanism.joints.get(home)
+        is_body_s = joint is not None and len(joint.joint.dofs) != 1
+        return is_body_s or self.mechanism.notation(home, UNNAMED) is not None or _is_beside(new, old)
 
     def _against(self, image: Mechanism) -> tuple[dict[Id, Id], tuple[Difference, ...]]:
         """The old ids of elements that the edited file calls otherwise than an image, by their new ones, and what else differs."""
-        names = renames(self.edited, image)
-        return names, diff(image, with_old_names(self.edited, names), TOLERANCE)
+        names = self._renames(image)
+        return names.given, diff(image, with_old_names(self.edited, names.every), TOLERANCE)
+
+    def _renames(self, image: Mechanism) -> Names:
+        """The other names that elements have in the edited file, as far as the elements around them tell."""
+        pairs = {new: old for new, old in other_names(self.edited, image).items() if new.kind == old.kind}
+        made = {new: old for new, old in pairs.items() if self._is_unnamed(new, old, image)}
+        made_names = {(new.name, old.name) for new, old in made.items()}
+        made |= {new: old for new, old in pairs.items() if old.kind in _PLACING and (new.name, old.name) in made_names}
+        return Names({new: old for new, old in pairs.items() if old.kind in NAMED and new not in made}, made)
+
+    def _is_unnamed(self, new: Id, old: Id, image: Mechanism) -> bool:
+        """Whether an element has no name in any of the three files: a contact, one that says so, an actuator that the options ask for."""
+        if old.kind == "actuator" and self._homes.get(old, old) not in self.mechanism.graph:
+            return True
+        return old.kind == "contact" or not (_has_name(self.edited, new) or _has_name(image, old))
 
     def _with_inertials(self, image: Mechanism) -> Mechanism:
         """The edited robot; a body without an inertial, where the image has one or has no such body, has what the engine computes."""
@@ -170,11 +219,17 @@ def _is_telling(edit: Difference) -> bool:
     if None in (edit.before, edit.after):
         return edit.element.kind in _WHOLE and not edit.field
     is_weight = edit.element.kind == "shape" and edit.field in ("mass", "density")
-    return not is_weight and "none" not in (edit.before, edit.after)
+    return not is_weight and not {"none", "[]"} & {edit.before, edit.after}
 
 
 _WHOLE = frozenset({"body", "joint", "actuator", "sensor", "camera", "light", "coupling", "loop", "tendon", "contact"})
 """The kinds of elements that no format computes from others."""
+
+
+def _is_beside(new: Id, old: Id) -> bool:
+    """Whether one of two names is what an element gets beside a link of the other name, so that it tells of no edit."""
+    mark = f"_{old.kind}"
+    return old.kind in _LIKE_LINKS and new.name.removesuffix(mark) == old.name.removesuffix(mark)
 
 
 def _on_world(robot: Mechanism) -> Iterator[JointView]:
@@ -183,9 +238,21 @@ def _on_world(robot: Mechanism) -> Iterator[JointView]:
         yield from robot.children.get(world, ())
 
 
-def renames(edited: Mechanism, image: Mechanism) -> dict[Id, Id]:
-    """The old ids of renamed elements by their new ones, as far as the elements around them tell."""
-    return {new: old for new, old in other_names(edited, image).items() if old.kind in NAMED and new.kind == old.kind}
+class Names(NamedTuple):
+    """The old ids of renamed elements by their new ones: where people give names, and where formats make them from other names."""
+
+    given: dict[Id, Id]
+    made: dict[Id, Id]
+
+    @property
+    def every(self) -> dict[Id, Id]:
+        """All of them."""
+        return {**self.made, **self.given}
+
+
+def _has_name(robot: Mechanism, key: Id) -> bool:
+    """Whether the author of an element gave it a name."""
+    return robot.notation(key, UNNAMED) is None
 
 
 def new_assets(before: Mechanism, after: Mechanism) -> Iterator[str]:

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Report, refuse
-from hymeko_x.edits.text import EditedFiles, text_with_edits
+from hymeko_x.edits.text import EditedFiles, Texts, text_with_edits
 from hymeko_x.edits.updating import Updated
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import Id
@@ -60,7 +60,9 @@ def repaired(source: Source, format: Format, before: Mechanism, found: Sequence[
     mended = _mend_joints(named, context, frozenset(one.element for one in found if one.code == codes.NOT_UNIT))
     after = _with_inertials(_mend_sizes(_mend_tensors(mended, context), context), options, context)
     after = shorten_computed(after, before)
-    changed = dict(text_with_edits(source, format, before, after, report).changed) if after is not before else {}
+    texts = text_with_edits(source, format, before, after, report) if after is not before else Texts({}, {})
+    texts.report_missing(source, report)
+    changed = texts.changed
     old = {path: source.data if path == source.name else source.files.read(path) for path in changed}
     return Updated(after, (), source.data, changed, old, {}, report)
 

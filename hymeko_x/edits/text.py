@@ -38,12 +38,18 @@ _MOST_TRIES = 3
 class Texts(NamedTuple):
     """Texts that changed, by their paths, the main one by the name of its source; and new files beside the main one.
 
-    ``missing`` are imported elements whose edits have no place in the text.
+    ``missing`` are imported elements whose edits have no place in the text, ``fault`` that in words.
     """
 
     changed: dict[str, bytes]
     beside: Mapping[str, bytes]
     missing: frozenset[Id] = frozenset()
+    fault: str = ""
+
+    def report_missing(self, source: Source, report: Report) -> None:
+        """Warn of the edits that have no place in the text of a source."""
+        if self.fault:
+            report.warn(codes.EDIT_DROPPED, self.fault, Origin(source.name))
 
 
 class PackagesBehind(Struct, frozen=True):
@@ -96,15 +102,16 @@ def text_with_edits(source: Source, format: Format, before: Mechanism, after: Me
             _report_replaced(replaced.values(), source, report)
             return Texts({**files, **companion}, attempt.beside)
         if wrong is not _UNREADABLE and attempt.imported.issuperset(wrong):
-            _report_missing(wrong, source, report)
-            return Texts({**files, **companion}, attempt.beside, wrong)
+            names = listed(sorted(map(str, wrong)), _MOST_NAMES)
+            fault = f"edits have no place in the text, which imports what they change: {names}"
+            return Texts({**files, **companion}, attempt.beside, wrong, fault)
         more = None if wrong is _UNREADABLE or attempt.imported else attempt.blocks_of(wrong)
         if more is None or more.keys() <= replaced.keys():
             break
         replaced |= more
     if attempt.imported:
-        report.warn(codes.EDIT_DROPPED, "the edits have no place in the text, which imports robots of other files", Origin(source.name))
-        return Texts({}, {}, frozenset(difference.element for difference in diff(before, after, TOLERANCE)))
+        missing = frozenset(difference.element for difference in diff(before, after, TOLERANCE))
+        return Texts({}, {}, missing, "the edits have no place in the text, which imports robots of other files")
     report.warn(codes.EDIT_REWRITTEN, f"the edits could not be placed in the text of '{source.name}', which is printed anew as a whole")
     return Texts({source.name: attempt.whole, **companion}, attempt.beside)
 
@@ -127,11 +134,6 @@ def _companion_with_edits(source: Source, format: Format, before: Mechanism, aft
 def _report_replaced(elements: Iterable[Id], source: Source, report: Report) -> None:
     for key in dict.fromkeys(elements):
         report.note(codes.EDIT_REWRITTEN, f"{key} is printed anew in '{source.name}': its edit has no place in the author's text")
-
-
-def _report_missing(elements: Iterable[Id], source: Source, report: Report) -> None:
-    names = listed(sorted(map(str, elements)), _MOST_NAMES)
-    report.warn(codes.EDIT_DROPPED, f"edits have no place in the text, which imports what they change: {names}", Origin(source.name))
 
 
 _MOST_NAMES = 5

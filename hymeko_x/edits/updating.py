@@ -6,7 +6,7 @@ import os
 import posixpath
 from contextlib import suppress
 from difflib import unified_diff
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -18,12 +18,12 @@ from hymeko_x.diagnostics import Origin, Report, refuse
 from hymeko_x.edits.conversion import Conversion, new_assets
 from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
 from hymeko_x.ir.names import rename
-from hymeko_x.ir.parts import Mesh, Texture
+from hymeko_x.ir.parts import Body, Mesh, Texture
 from hymeko_x.residue.pairing import other_names
 from hymeko_x.rewrite import Options
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Set
 
     from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
@@ -35,6 +35,8 @@ _ASSETS = "meshes"
 _ASSET_KINDS = frozenset({"mesh", "material", "texture"})
 _MOST_MISSING = 10
 """How many edits that did not arrive are listed."""
+_MOST_ROUNDS = 4
+"""How often a text with edits is converted and compared again."""
 
 
 class Updated(Struct, frozen=True):
@@ -75,36 +77,89 @@ class Updated(Struct, frozen=True):
             yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
 
 
+class _Round(NamedTuple):
+    """One round of an update: the robot as the text had it, and what changes in the texts; ``lost`` edits have no place in the format."""
+
+    before: Mechanism
+    texts: Texts
+    beside: Mapping[str, bytes]
+    lost: tuple[Difference, ...]
+
+
 def update(original: Source, format: Format, edited: Source, edited_format: Format, options: Options, report: Report) -> Updated:
     """The edits in ``edited``, which was once converted from ``original``, in the text of that. ``options``: those of the conversion.
+
+    What an edit brings with it, such as a name that follows from another one, shows when the new text is converted in its turn; so this
+    is done until nothing changes any more. What is left then has no place in the original.
 
     Raises: Refusal when a file cannot be read or ``original`` cannot be converted; HX003 where the text of the format cannot be edited.
     """
     if format.outline is None:
         raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} is no text in which edits could be placed", Origin(original.name))
-    before = pipeline.read(original, format, Report())
-    notes = Report()
-    conversion = Conversion(before, original, edited, edited_format, format, report, notes)
-    after, beside = _with_new_assets(before, conversion.edited_mechanism(options), edited)
+    conversion = Conversion(edited, edited_format, format, options, report)
+    source, changed, beside = original, dict[str, bytes](), dict[str, bytes]()
+    first = None
+    for _ in range(_MOST_ROUNDS):
+        found = _round(source, format, conversion, edited, report)
+        first = first or found
+        if not found.texts.changed:
+            break
+        changed |= found.texts.changed
+        beside |= {**found.beside, **found.texts.beside}
+        files = EditedFiles(original.files, {**changed, **beside})
+        source = replace(original, data=changed.get(original.name, original.data), files=files)
+    assert first is not None
+    _report_left(found, conversion, original, format, report)
+    if not changed:  # the original is the same already, in the words of its own format
+        return Updated(first.before, (), original.data, {}, {}, {}, report)
+    report.extend(conversion.notes)
+    after = found.before
+    old = {path: original.data if path == original.name else original.files.read(path) for path in changed}
+    edits = diff(first.before, rename(after, _called_after(first.before, after)), TOLERANCE)
+    return Updated(replace(after, origins=first.before.origins), edits, original.data, changed, old, beside, report)
+
+
+def _round(original: Source, format: Format, conversion: Conversion, edited: Source, report: Report) -> _Round:
+    """The edits that a text does not have yet, carried over to it."""
+    before = pipeline.read(original, format, Report(), lenient=conversion.is_known)
+    after, beside = _with_new_assets(before, conversion.edited_mechanism(before, original), edited)
     after = _with_imported_names(before, after, imported(original, format, before))
     every = diff(before, after, TOLERANCE)
-    dropped = _dropped(every, after, original, format)
-    lost = [edit for edit in dropped if not _is_unused(edit, after)]
+    gone = _dropped(every, after, original, format)
+    after = _without_inertials(before, after, {element for element, field in gone if field.partition(".")[0] == "inertial"})
+    dropped = [edit for edit in every if (str(edit.element), edit.field) in gone and not _is_inherited(edit) and not _is_weight(edit)]
+    texts = text_with_edits(original, format, before, after, report) if len(dropped) < len(every) else Texts({}, {})
+    return _Round(before, texts, beside, tuple([edit for edit in dropped if not _is_unused(edit, after)]))
+
+
+def _report_left(found: _Round, conversion: Conversion, original: Source, format: Format, report: Report) -> None:
+    """Report the edits that have no place in the original, after the last round."""
+    left = conversion.left()
+    lost = [edit for edit in found.lost if edit.element not in left.renamed]
     for edit in lost:
         message = f"the edit has no place in {format.name}: {edit}"
-        report.warn(codes.EDIT_DROPPED, message, before.origin(edit.element), element=str(edit.element))
-    edits = tuple([edit for edit in every if edit not in dropped])
-    texts = text_with_edits(original, format, before, after, report) if edits else Texts({}, {})
-    edits = tuple([edit for edit in edits if edit.element not in texts.missing])
-    if not lost and not texts.missing:
-        files = EditedFiles(original.files, {**texts.changed, **beside, **texts.beside})
-        text = texts.changed.get(original.name, original.data)
-        _report_missing(conversion.missing(replace(original, data=text, files=files)), original, report)
-    if not texts.changed:  # the original is the same already, in the words of its own format
-        return Updated(before, (), original.data, {}, {}, {}, report)
-    report.extend(notes)
-    old = {path: original.data if path == original.name else original.files.read(path) for path in texts.changed}
-    return Updated(replace(after, origins=before.origins), edits, original.data, texts.changed, old, {**beside, **texts.beside}, report)
+        report.warn(codes.EDIT_DROPPED, message, found.before.origin(edit.element), element=str(edit.element))
+    found.texts.report_missing(original, report)
+    if not found.texts.missing:
+        _report_missing([*left.names, *(() if lost else left.edits)], original, report)
+        for words in left.made_names:
+            hint = f"{format.name} has no name for it there"
+            report.note(codes.EDIT_DROPPED, f"the edit did not arrive: {words}", Origin(original.name), hint=hint)
+
+
+def _without_inertials(before: Mechanism, after: Mechanism, bodies: Set[str]) -> Mechanism:
+    """The edited robot; the inertials of these bodies, which the format would write and its engine pass over, are those of before."""
+    inertials: dict[Id, VertexPart] = {}
+    for key, body in after.vertices(Body) if bodies else ():
+        if str(key) in bodies:
+            earlier = before.graph.vertices.get(key)
+            inertials[key] = replace(body, inertial=earlier.inertial if isinstance(earlier, Body) else None)
+    return after.with_graph(after.graph.replace(vertices=inertials)) if inertials else after
+
+
+def _called_after(before: Mechanism, after: Mechanism) -> dict[Id, Id]:
+    """The old ids of elements that are called after a body, and have followed its new name, by their new ones."""
+    return {new: old for new, old in other_names(after, before).items() if old.kind == new.kind == "shape"}
 
 
 def _with_imported_names(before: Mechanism, after: Mechanism, imported: frozenset[Id]) -> Mechanism:
@@ -121,13 +176,13 @@ def _report_missing(missing: list[str], original: Source, report: Report) -> Non
         report.warn(codes.EDIT_DROPPED, f"{len(missing) - _MOST_MISSING} more edits did not arrive", Origin(original.name))
 
 
-def _dropped(edits: tuple[Difference, ...], after: Mechanism, original: Source, format: Format) -> list[Difference]:
-    """The edits that the format of the original cannot represent. The mass of a shape is part of its body's inertial."""
+def _dropped(edits: tuple[Difference, ...], after: Mechanism, original: Source, format: Format) -> frozenset[tuple[str, str]]:
+    """The elements and fields among the edits that the format of the original cannot represent."""
     if not edits or format.is_exact:
-        return []
+        return frozenset()
+    elements = {str(edit.element) for edit in edits}
     losses = pipeline.convert(after, format, Options(lenient=True), original.files, Report()).losses or ()
-    gone = {(loss.element, loss.field) for loss in losses if loss.fate == "dropped"}
-    return [edit for edit in edits if (str(edit.element), edit.field) in gone and not _is_inherited(edit) and not _is_weight(edit)]
+    return frozenset((loss.element, loss.field) for loss in losses if loss.fate == "dropped" and loss.element in elements)
 
 
 def _is_unused(edit: Difference, after: Mechanism) -> bool:
@@ -136,6 +191,7 @@ def _is_unused(edit: Difference, after: Mechanism) -> bool:
 
 
 def _is_weight(edit: Difference) -> bool:
+    """Whether an edit is of the mass of a shape, which is part of its body's inertial."""
     return edit.element.kind == "shape" and edit.field in ("mass", "density")
 
 

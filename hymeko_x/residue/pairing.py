@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge, RobotGraph
 
+_PLACED = ("actuator", "sensor", "frame", "camera", "light")
+"""Kinds of elements that an edge places, which most often has their name."""
 _DIGITS = 7
 """To how many decimals the numbers of two shapes agree that are the same one: formats round angles and single-precision numbers."""
 
@@ -131,9 +133,9 @@ class _Pairs:
                 self.pair(key, same.pop())
 
     def _ends(self, key: Id, edge: RobotEdge, names: dict[Id, Id]) -> object:
-        """What an edge is and what it is on; assets do not count, since they are renamed most often."""
-        targets = (names.get(arc.target, arc.target) for arc in edge.arcs if arc.target.kind not in ("mesh", "material", "texture"))
-        return key.kind, tuple(targets)
+        """What an edge is and what it is on; assets do not count, which are renamed most often, nor what is called as the edge is."""
+        targets = [names.get(arc.target, arc.target) for arc in edge.arcs if arc.target.kind not in ("mesh", "material", "texture")]
+        return key.kind, tuple([target.kind if target.kind in _PLACED and target.name == key.name else target for target in targets])
 
 
 def _doubtful(image: RobotGraph, source: RobotGraph) -> Iterator[Id]:

@@ -89,8 +89,9 @@ def test_masses_have_no_place_where_the_engine_counts_shapes(tmp_path: Path) -> 
     (tmp_path / "r.urdf").write_text((tmp_path / "r.urdf").read_text().replace("</robot>", TOOL))
     for _ in range(2):
         found = hx.update(tmp_path / "r.xml", tmp_path / "r.urdf")
-    assert [row.code.id for row in found.report] == ["HX118"]
-    assert "body 'tool' inertial: none -> inertial(mass 1.5" in found.report.diagnostics[0].message
+        assert [row.code.id for row in found.report] == ["HX118"]
+        assert "body 'tool' inertial: none -> inertial(mass 1.5" in found.report.diagnostics[0].message
+    assert "<inertial" not in (tmp_path / "r.xml").read_text()
 
 
 @pytest.mark.unread("HX101")

@@ -10,12 +10,22 @@ from hymeko_x.formats.mjcf.notations import GRID as NOTED_GRID
 from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, seen_from
 from hymeko_x.formats.mjcf.roles import role_attributes
 from hymeko_x.ir.graph import Arc
-from hymeko_x.ir.parts import NoShape, Plane
+from hymeko_x.ir.parts import Body, NoShape, Plane
+from hymeko_x.rewrite.densities import WATER
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.backends.mjcf.sheet import BodyTag, MjcfSheet
     from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.ir.mechanism import ShapeView
+
+
+def _is_of_water(sheet: MjcfSheet, view: ShapeView, base: Mapping[str, str]) -> bool:
+    """Whether the mass of a body follows from a shape without a density, which the class of that would give another one."""
+    part = sheet.mechanism.graph.vertices.get(view.body)
+    weighs = isinstance(part, Body) and part.inertial is None and view.shape.mass is None and view.shape.density is None
+    return sheet.from_mjcf and weighs and "density" in base
 
 
 def geom_tag(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
@@ -39,7 +49,7 @@ def geom_tag(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
         "material": None if view.material is None else sheet.reference(Arc(view.material)),
         "rgba": shape.rgba or (),
         "mass": shape.mass,
-        "density": shape.density,
+        "density": WATER if _is_of_water(sheet, view, base) else shape.density,
         "friction": shape.friction,
     }
     context = kept if fitted or mesh is None else {**kept, "mesh": mesh}

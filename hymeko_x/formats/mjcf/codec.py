@@ -288,14 +288,14 @@ def first_real(name: str) -> Group:
     return Group(name, (name,), read, write, seen_numbers(name, 0.0))
 
 
-def reals(name: str, least: int, most: int) -> Group:
-    """Some numbers; empty when there are none."""
+def reals(name: str, least: int, most: int, engine: tuple[float, ...] = ()) -> Group:
+    """Some numbers; empty when there are none. ``engine``: what MuJoCo takes then, written where a class would give others."""
 
     def read(attributes: Mapping[str, str], settings: Settings) -> tuple[float, ...]:
         return numbers_of(attributes, name, least, most) or ()
 
     def write(value: tuple[float, ...], settings: Settings) -> dict[str, str]:
-        return {name: numbers_text(value)} if value else {}
+        return {name: numbers_text(value or engine)} if value or engine else {}
 
     return Group(name, (name,), read, write, seen_numbers(name, None), exact=True)
 

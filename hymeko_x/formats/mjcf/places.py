@@ -177,7 +177,17 @@ def _seen_place(attributes: Mapping[str, str], settings: Settings) -> Any:
 
 PLACE = Group("place", ("type", "size", "fromto", *POSE_NAMES), _read_place, _write_place, _seen_place, ("mesh", "hfield"))
 
-GEOM = (PLACE, text("mesh"), text("material"), reals("rgba", 4, 4), real("mass"), real("density"), reals("friction", 1, 3))
+_GREY = (0.5, 0.5, 0.5, 1.0)
+_FRICTION = (1.0, 0.005, 0.0001)
+GEOM = (
+    PLACE,
+    text("mesh"),
+    text("material"),
+    reals("rgba", 4, 4, _GREY),
+    real("mass"),
+    real("density"),
+    reals("friction", 1, 3, _FRICTION),
+)
 
 FITTED_GEOM = tuple(group for group in GEOM if group.key != "mesh")
 """A primitive that MuJoCo fits to a mesh: the name of the mesh is kept as it is."""

@@ -1,0 +1,94 @@
+"""What an edit brings with it comes home with it: a second update finds nothing more, or reports the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import pytest
+
+import hymeko_x as hx
+
+LEG = """<mujoco model="r">
+  <default>
+    <geom friction="1.5 0.1 0.1" rgba="0.8 0.6 0.4 1" density="5"/>
+  </default>
+  <worldbody>
+    <body name="leg">
+      <geom name="shin" type="capsule" fromto="0 0 0 0 0 1" size="0.1"/>
+      <body name="foot" pos="0 0 1">
+        <joint name="foot"/>
+        <geom name="sole" size="0.1"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>
+    <motor joint="foot" gear="3"/>
+  </actuator>
+</mujoco>
+"""
+
+
+def brought_home(folder: Path, name: str, *changes: tuple[str, str]) -> tuple[str, list[str]]:
+    """The text after the converted file was changed so, and what both updates report of it; the second one has no edits."""
+    original, there = folder / "r.xml", folder / name
+    original.write_text(LEG)
+    hx.convert(original, there)
+    text = there.read_text()
+    for old, new in changes:
+        assert old in text, text
+        text = text.replace(old, new)
+    there.write_text(text)
+    first = [str(row) for row in hx.update(original, there).report if row.code.id == "HX118"]
+    after = original.read_text()
+    again = hx.update(original, there)
+    assert (again.edits, original.read_text()) == ((), after)
+    assert [str(row) for row in again.report if row.code.id == "HX118"] == first
+    return after, [message.partition("note[HX118]: ")[2].partition("\n")[0] for message in first]
+
+
+JOINT_JSON = (('"joint","id":"foot"', '"joint","id":"ankle"'), ('["joint","foot"]', '["joint","ankle"]'))
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "motor"),
+    [
+        ("r.usda", (('Joint "foot"', 'Joint "ankle"'), ("joints/foot>", "joints/ankle>")), 'name="foot_motor" '),
+        ("r.hymeko", (("@foot { [0 0 1] + leg }", "@ankle { [0 0 1] + leg - foot }"), ("[3] - foot", "[3] - ankle")), ""),
+        ("r.json", JOINT_JSON, ""),
+    ],
+)
+@pytest.mark.unread("HX101")
+def test_an_actuator_is_called_as_in_the_edited_file_when_its_joint_is_renamed(
+    name: str, changes: tuple[tuple[str, str], ...], motor: str, tmp_path: Path
+) -> None:
+    renamed = LEG.replace('joint name="foot"', 'joint name="ankle"')
+    assert brought_home(tmp_path, name, *changes) == (renamed.replace('motor joint="foot"', f'motor {motor}joint="ankle"'), [])
+
+
+@pytest.mark.unread("HX101", "HX023")
+def test_a_joint_that_a_format_calls_apart_from_its_link_keeps_its_name_when_that_is_renamed(tmp_path: Path) -> None:
+    changes = (("<child>foot<", "<child>sole<"), ('link name="foot"', 'link name="sole"'))
+    after, notes = brought_home(tmp_path, "r.sdf", *changes)
+    assert after == LEG.replace('body name="foot"', 'body name="sole"')
+    assert notes == ["the edit did not arrive: joint 'foot' is called 'foot_joint'"]
+
+
+@pytest.mark.unread("HX101")
+def test_the_name_of_a_joint_that_mjcf_has_no_element_for_is_noted_each_time(tmp_path: Path) -> None:
+    tool = '<link name="tool"/><joint name="mount" type="fixed"><parent link="foot"/><child link="tool"/></joint></robot>'
+    after, notes = brought_home(tmp_path, "r.urdf", ("</robot>", tool))
+    assert '        <body name="tool">\n' in after
+    assert notes == ["the edit did not arrive: joint 'tool' is called 'mount'"]
+
+
+def test_a_shape_that_is_new_has_mujoco_s_values_where_a_class_would_give_others(tmp_path: Path) -> None:
+    ball = "ball { [0 0.2 0] + foot shape { sphere 0.1 } }\n"
+    after, notes = brought_home(tmp_path, "r.hymeko", ("  @foot", f"  {ball}  @foot"))
+    assert '<geom type="sphere" size="0.1" rgba="0.5 0.5 0.5 1" density="1000" friction="1 0.005 0.0001"/>' in after
+    assert notes == []
+    there = hx.loads((tmp_path / "r.hymeko").read_text(), "hymeko").mechanism
+    models = [mujoco.MjModel.from_xml_string(text) for text in (after, hx.dumps(there, "mjcf"))]
+    masses, frictions = ([list(getattr(model, field).flat) for model in models] for field in ("body_mass", "geom_friction"))
+    assert masses[0] == pytest.approx(masses[1])
+    assert frictions[0] == frictions[1]
