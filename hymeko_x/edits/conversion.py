@@ -10,15 +10,17 @@ from msgspec.structs import replace
 from hymeko_x import codes, disk, formats, pipeline, targets
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
+from hymeko_x.compare.relevance import relevant
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
-from hymeko_x.ir.mechanism import WORLD, Id
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
+from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Body, Mesh, Texture
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.landmarks import NAMED
 from hymeko_x.residue.merge import restore
-from hymeko_x.residue.pairing import other_names
+from hymeko_x.residue.pairing import other_names, reordered_shapes
 from hymeko_x.residue.realign import with_new_names, with_old_names
 from hymeko_x.source import PackageFiles
 
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import JointView, Mechanism
+    from hymeko_x.ir.mechanism import JointView
     from hymeko_x.rewrite import Options
     from hymeko_x.source import Files, Source
 
@@ -57,6 +59,11 @@ class Left(NamedTuple):
     made_names: list[str]
     edits: list[str]
 
+    @property
+    def number(self) -> int:
+        """How many there are."""
+        return len(self.names) + len(self.made_names) + len(self.edits)
+
 
 class Conversion:
     """The conversion of ORIGINAL into the format of EDITED, made again, and once more after each round of edits."""
@@ -71,6 +78,8 @@ class Conversion:
         self.folder = os.path.dirname(edited.name) or "."
         self._used: Guess | None = None
         self._homes: dict[Id, Id] = {}
+        self.mechanism = Mechanism("")
+        self._earlier: tuple[Mechanism, Guess | None, dict[Id, Id]] = (self.mechanism, None, {})
 
     @property
     def is_known(self) -> bool:
@@ -82,6 +91,7 @@ class Conversion:
 
         Raises: Refusal when ORIGINAL cannot be written in the format.
         """
+        self._earlier = (self.mechanism, self._used, self._homes)
         self.mechanism, self.source = mechanism, source
         notes = Report() if self.is_known else self.notes
         guess = self._again(self._used) if self._used is not None else self._first()
@@ -89,10 +99,14 @@ class Conversion:
         residue = residue_of(mechanism, guess.image)
         self._homes = homes = dict(residue.alignment.names)
         names = self._renames(guess.image)
-        restored = restore(with_old_names(self._with_inertials(guess.image), names.every), residue, notes).mechanism
+        restored = restore(self._under(names, self._with_inertials(guess.image), guess.image), residue, notes).mechanism
         own = {new: homes.get(old, old) for new, old in names.given.items() if not _is_beside(new, old)}
         named = with_new_names(restored, {new: old for new, old in own.items() if old != WORLD})
         return with_edited_poses(self._with_transmissions(named), guess.image, self.edited, self.format)
+
+    def go_back(self) -> None:
+        """The last text is given up: what was compared before it counts."""
+        self.mechanism, self._used, self._homes = self._earlier
 
     def _first(self) -> Guess:
         """How the first conversion may have been made."""
@@ -129,7 +143,13 @@ class Conversion:
     def _against(self, image: Mechanism) -> tuple[dict[Id, Id], tuple[Difference, ...]]:
         """The old ids of elements that the edited file calls otherwise than an image, by their new ones, and what else differs."""
         names = self._renames(image)
-        return names.given, diff(image, with_old_names(self.edited, names.every), TOLERANCE)
+        edited = self._under(names, self.edited, image)
+        return names.given, tuple(relevant(diff(image, edited, TOLERANCE), image, edited, TOLERANCE))
+
+    def _under(self, names: Names, edited: Mechanism, image: Mechanism) -> Mechanism:
+        """The edited robot under the names of the image, and the shapes of each body under the ids that they have there."""
+        named = with_old_names(edited, names.every)
+        return rename(named, reordered_shapes(named, image))
 
     def _renames(self, image: Mechanism) -> Names:
         """The other names that elements have in the edited file, as far as the elements around them tell."""

@@ -61,6 +61,7 @@ def repaired(source: Source, format: Format, before: Mechanism, found: Sequence[
     after = _with_inertials(_mend_sizes(_mend_tensors(mended, context), context), options, context)
     after = shorten_computed(after, before)
     texts = text_with_edits(source, format, before, after, report) if after is not before else Texts({}, {})
+    texts.report_printed(source, report)
     texts.report_missing(source, report)
     changed = texts.changed
     old = {path: source.data if path == source.name else source.files.read(path) for path in changed}

@@ -38,13 +38,24 @@ _MOST_TRIES = 3
 class Texts(NamedTuple):
     """Texts that changed, by their paths, the main one by the name of its source; and new files beside the main one.
 
-    ``missing`` are imported elements whose edits have no place in the text, ``fault`` that in words.
+    ``missing`` are imported elements whose edits have no place in the text, ``fault`` that in words; ``printed`` are elements that are
+    printed anew, and ``is_whole`` says that the whole text is.
     """
 
     changed: dict[str, bytes]
     beside: Mapping[str, bytes]
     missing: frozenset[Id] = frozenset()
     fault: str = ""
+    printed: frozenset[Id] = frozenset()
+    is_whole: bool = False
+
+    def report_printed(self, source: Source, report: Report) -> None:
+        """Report what is printed anew in the text of a source."""
+        for key in sorted(self.printed):
+            report.note(codes.EDIT_REWRITTEN, f"{key} is printed anew in '{source.name}': its edit has no place in the author's text")
+        if self.is_whole:
+            message = f"the edits could not be placed in the text of '{source.name}', which is printed anew as a whole"
+            report.warn(codes.EDIT_REWRITTEN, message)
 
     def report_missing(self, source: Source, report: Report) -> None:
         """Warn of the edits that have no place in the text of a source."""
@@ -88,7 +99,7 @@ def text_with_edits(source: Source, format: Format, before: Mechanism, after: Me
     """The files of a source that change when its mechanism ``before`` becomes ``after``.
 
     What was written is read again and compared. Where it is not what was meant, the elements in question are replaced by their print, and
-    at last the whole text; both are reported.
+    at last the whole text.
 
     Raises: Refusal when the format cannot represent the mechanism.
     """
@@ -99,8 +110,7 @@ def text_with_edits(source: Source, format: Format, before: Mechanism, after: Me
         files = attempt.files(replaced)
         wrong = attempt.wrong(files)
         if wrong is None:
-            _report_replaced(replaced.values(), source, report)
-            return Texts({**files, **companion}, attempt.beside)
+            return Texts({**files, **companion}, attempt.beside, printed=frozenset(replaced.values()))
         if wrong is not _UNREADABLE and attempt.imported.issuperset(wrong):
             names = listed(sorted(map(str, wrong)), _MOST_NAMES)
             fault = f"edits have no place in the text, which imports what they change: {names}"
@@ -112,8 +122,7 @@ def text_with_edits(source: Source, format: Format, before: Mechanism, after: Me
     if attempt.imported:
         missing = frozenset(difference.element for difference in diff(before, after, TOLERANCE))
         return Texts({}, {}, missing, "the edits have no place in the text, which imports robots of other files")
-    report.warn(codes.EDIT_REWRITTEN, f"the edits could not be placed in the text of '{source.name}', which is printed anew as a whole")
-    return Texts({source.name: attempt.whole, **companion}, attempt.beside)
+    return Texts({source.name: attempt.whole, **companion}, attempt.beside, is_whole=True)
 
 
 def _companion_with_edits(source: Source, format: Format, before: Mechanism, after: Mechanism) -> dict[str, bytes]:
@@ -129,11 +138,6 @@ def _companion_with_edits(source: Source, format: Format, before: Mechanism, aft
         return {}
     own, old, new = (outline(Source(path, data), Report()) for data in (source.files.read(path), *prints))
     return {own.files[name].path: data for name, data in merged(own, old, new).items()}
-
-
-def _report_replaced(elements: Iterable[Id], source: Source, report: Report) -> None:
-    for key in dict.fromkeys(elements):
-        report.note(codes.EDIT_REWRITTEN, f"{key} is printed anew in '{source.name}': its edit has no place in the author's text")
 
 
 _MOST_NAMES = 5

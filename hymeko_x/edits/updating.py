@@ -78,45 +78,49 @@ class Updated(Struct, frozen=True):
 
 
 class _Round(NamedTuple):
-    """One round of an update: the robot as the text had it, and what changes in the texts; ``lost`` edits have no place in the format."""
+    """One round of an update: the robot as the text had it, and what changes in the texts; ``lost`` edits have no place in the format.
+
+    ``distance`` is in how much the text was not what EDITED asks for.
+    """
 
     before: Mechanism
     texts: Texts
     beside: Mapping[str, bytes]
     lost: tuple[Difference, ...]
+    distance: int
 
 
 def update(original: Source, format: Format, edited: Source, edited_format: Format, options: Options, report: Report) -> Updated:
     """The edits in ``edited``, which was once converted from ``original``, in the text of that. ``options``: those of the conversion.
 
     What an edit brings with it, such as a name that follows from another one, shows when the new text is converted in its turn; so this
-    is done until nothing changes any more. What is left then has no place in the original.
+    is done as long as the text comes closer to what was edited. What is left then has no place in the original.
 
     Raises: Refusal when a file cannot be read or ``original`` cannot be converted; HX003 where the text of the format cannot be edited.
     """
     if format.outline is None:
         raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} is no text in which edits could be placed", Origin(original.name))
     conversion = Conversion(edited, edited_format, format, options, report)
-    source, changed, beside = original, dict[str, bytes](), dict[str, bytes]()
-    first = None
+    first = found = _round(original, format, conversion, edited, report)
+    changed, beside = dict[str, bytes](), dict[str, bytes]()
     for _ in range(_MOST_ROUNDS):
-        found = _round(source, format, conversion, edited, report)
-        first = first or found
         if not found.texts.changed:
             break
-        changed |= found.texts.changed
-        beside |= {**found.beside, **found.texts.beside}
-        files = EditedFiles(original.files, {**changed, **beside})
-        source = replace(original, data=changed.get(original.name, original.data), files=files)
-    assert first is not None
+        new, new_beside = {**changed, **found.texts.changed}, {**beside, **found.beside, **found.texts.beside}
+        source = replace(original, data=new.get(original.name, original.data), files=EditedFiles(original.files, {**new, **new_beside}))
+        later = _round(source, format, conversion, edited, Report())
+        if changed and later.distance >= found.distance:
+            conversion.go_back()
+            break
+        found.texts.report_printed(original, report)
+        changed, beside, found = new, new_beside, later
     _report_left(found, conversion, original, format, report)
     if not changed:  # the original is the same already, in the words of its own format
         return Updated(first.before, (), original.data, {}, {}, {}, report)
     report.extend(conversion.notes)
-    after = found.before
     old = {path: original.data if path == original.name else original.files.read(path) for path in changed}
-    edits = diff(first.before, rename(after, _called_after(first.before, after)), TOLERANCE)
-    return Updated(replace(after, origins=first.before.origins), edits, original.data, changed, old, beside, report)
+    edits = diff(first.before, rename(found.before, _called_after(first.before, found.before)), TOLERANCE)
+    return Updated(replace(found.before, origins=first.before.origins), edits, original.data, changed, old, beside, report)
 
 
 def _round(original: Source, format: Format, conversion: Conversion, edited: Source, report: Report) -> _Round:
@@ -129,7 +133,8 @@ def _round(original: Source, format: Format, conversion: Conversion, edited: Sou
     after = _without_inertials(before, after, {element for element, field in gone if field.partition(".")[0] == "inertial"})
     dropped = [edit for edit in every if (str(edit.element), edit.field) in gone and not _is_inherited(edit) and not _is_weight(edit)]
     texts = text_with_edits(original, format, before, after, report) if len(dropped) < len(every) else Texts({}, {})
-    return _Round(before, texts, beside, tuple([edit for edit in dropped if not _is_unused(edit, after)]))
+    lost = tuple([edit for edit in dropped if not _is_unused(edit, after)])
+    return _Round(before, texts, beside, lost, conversion.left().number)
 
 
 def _report_left(found: _Round, conversion: Conversion, original: Source, format: Format, report: Report) -> None:

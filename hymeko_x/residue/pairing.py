@@ -149,6 +149,45 @@ def _doubtful(image: RobotGraph, source: RobotGraph) -> Iterator[Id]:
             yield key
 
 
+def reordered_shapes(edited: Mechanism, image: Mechanism) -> dict[Id, Id]:
+    """New ids for shapes of bodies that have the same ones in another order: those of the image's shapes that they are. Linear."""
+    found: dict[Id, Id] = {}
+    free = Names((*edited.graph.edges, *image.graph.edges))
+    for body, views in edited.shapes.items():
+        mine, theirs = [view.id for view in views], [view.id for view in image.shapes.get(body, ())]
+        pairs = _same_shapes(edited.graph, mine, image.graph, theirs)
+        if any(old != new for old, new in pairs.items()):
+            taken = set(pairs.values())
+            found |= pairs | {key: free.take(*key) for key in mine if key not in pairs and key in taken}
+    return found
+
+
+def _same_shapes(edited: RobotGraph, mine: list[Id], image: RobotGraph, theirs: list[Id]) -> dict[Id, Id]:
+    """Which shape of the image each shape of one body is: by its name, then by what it is, then by its id."""
+    pairs: dict[Id, Id] = {}
+    for key_of in (_name_of, _content):
+        waiting: dict[object, list[Id]] = defaultdict(list)
+        taken = set(pairs.values())
+        for key in reversed([key for key in theirs if key not in taken]):
+            waiting[key_of(image, image.edges[key])].append(key)
+        for key in mine:
+            wanted = None if key in pairs else key_of(edited, edited.edges[key])
+            if wanted is not None and (same := waiting.get(wanted)):
+                pairs[key] = same.pop()
+    left = {*theirs}.difference(pairs.values())
+    return pairs | {key: key for key in mine if key not in pairs and key in left}
+
+
+def _name_of(graph: RobotGraph, edge: RobotEdge) -> object:
+    """The name, the role and the sort of a shape; None without a name."""
+    return (edge.data.name, edge.data.role, _sort(edge)) if isinstance(edge.data, Shape) and edge.data.name else None
+
+
+def _content(graph: RobotGraph, edge: RobotEdge) -> object:
+    """The role of a shape, and what it is."""
+    return (edge.data.role, _essence(graph, edge)) if isinstance(edge.data, Shape) else None
+
+
 def content_of(edge: RobotEdge) -> object:
     """The content of an edge, without names."""
     weights = tuple(arc.weight for arc in edge.arcs if arc.target.kind not in ("mesh", "material"))

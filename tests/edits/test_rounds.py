@@ -29,10 +29,10 @@ LEG = """<mujoco model="r">
 """
 
 
-def brought_home(folder: Path, name: str, *changes: tuple[str, str]) -> tuple[str, list[str]]:
+def brought_home(folder: Path, name: str, *changes: tuple[str, str], text: str = LEG) -> tuple[str, list[str]]:
     """The text after the converted file was changed so, and what both updates report of it; the second one has no edits."""
     original, there = folder / "r.xml", folder / name
-    original.write_text(LEG)
+    original.write_text(text)
     hx.convert(original, there)
     text = there.read_text()
     for old, new in changes:
@@ -92,3 +92,39 @@ def test_a_shape_that_is_new_has_mujoco_s_values_where_a_class_would_give_others
     masses, frictions = ([list(getattr(model, field).flat) for model in models] for field in ("body_mass", "geom_friction"))
     assert masses[0] == pytest.approx(masses[1])
     assert frictions[0] == frictions[1]
+
+
+TORSO = """<mujoco model="r">
+  <worldbody>
+    <body name="torso">
+      <inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/>
+      <joint name="j"/>
+      <geom name="trunk" type="capsule" fromto="-.5 0 0 .5 0 0" size="0.05"/>
+      <geom name="head" type="sphere" pos=".6 0 .1" size="0.1"/>
+      <body name="hat" pos="0 0 .5">
+        <inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101")
+def test_of_the_shapes_of_a_body_only_the_one_that_was_moved_changes(tmp_path: Path) -> None:
+    """The visual of the head moves, and leaves its collision behind; the trunk stays, whatever its place among the shapes."""
+    visual = '<visual name="head">\n        <pose>'
+    after, _ = brought_home(tmp_path, "r.sdf", (f"{visual}0.6", f"{visual}0.7"), text=TORSO)
+    gone, new = (set(a.splitlines()) - set(b.splitlines()) for a, b in ((TORSO, after), (after, TORSO)))
+    assert [line.strip() for line in gone] == ['<geom name="head" type="sphere" pos=".6 0 .1" size="0.1"/>']
+    assert sorted(line.strip() for line in new) == [
+        '<geom name="head" type="sphere" pos="0.7 0 .1" contype="0" conaffinity="0" group="2" size="0.1"/>',
+        '<geom name="head_collision" type="sphere" size="0.1" pos="0.6 0 0.1" group="3"/>',
+    ]
+
+
+@pytest.mark.unread("HX101")
+def test_a_link_that_is_moved_in_its_joint_is_moved_in_mjcf_which_has_no_such_place(tmp_path: Path) -> None:
+    moved = ('<pose relative_to="hat_joint">0 0 0 0 0 0</pose>', '<pose relative_to="hat_joint">0 0.2 0 0 0 0</pose>')
+    after, notes = brought_home(tmp_path, "r.sdf", moved, text=TORSO)
+    assert (after, notes) == (TORSO.replace('pos="0 0 .5"', 'pos="0 0.2 .5"'), [])
