@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _INTERFACES = ("hardwareInterface", "command_interface")
 """Parameters of a drive or an actuator that name what the hardware is commanded."""
-_KINDS: Mapping[str, str] = MappingProxyType(
+KINDS: Mapping[str, str] = MappingProxyType(
     {
         "position": "position",
         "velocity": "velocity",
@@ -86,7 +86,7 @@ def commanded(mechanism: Mechanism) -> list[Id]:
 def _commands(mechanism: Mechanism) -> list[_Command]:
     """The transmissions to be written: one for each joint, those of ros2_control before older ones."""
     found: dict[Id, _Command] = {}
-    taken = _moved_otherwise(mechanism)
+    taken = moved_otherwise(mechanism)
     drives = sorted(mechanism.edges(Drive), key=lambda item: _INTERFACES[1] not in dict(item[1].parameters))
     for key, drive, arcs in drives:
         command = _command(mechanism, key, drive, arcs)
@@ -96,16 +96,17 @@ def _commands(mechanism: Mechanism) -> list[_Command]:
     return list(found.values())
 
 
-def _moved_otherwise(mechanism: Mechanism) -> set[Id]:
+def moved_otherwise(mechanism: Mechanism) -> set[Id]:
     """The joints that follow another one, or that an actuator drives already."""
     found = {arc.target for _, _, arcs in mechanism.edges(Coupling) for arc in arcs if arc.sign > 0}
     for _, _, arcs in mechanism.edges(Drive):
-        if not all(_is_transmission(mechanism, arc.target) for arc in arcs if arc.sign > 0):
+        if not all(is_transmission(mechanism, arc.target) for arc in arcs if arc.sign > 0):
             found |= {arc.target for arc in arcs if arc.sign < 0}
     return found
 
 
-def _is_transmission(mechanism: Mechanism, actuator: Id) -> bool:
+def is_transmission(mechanism: Mechanism, actuator: Id) -> bool:
+    """Whether an actuator is that of a transmission, of which only the interface is known."""
     part = mechanism.part(actuator, Actuator)
     return part is not None and part.kind == "transmission"
 
@@ -113,17 +114,18 @@ def _is_transmission(mechanism: Mechanism, actuator: Id) -> bool:
 def _command(mechanism: Mechanism, key: Id, drive: Drive, arcs: tuple[RobotArc, ...]) -> _Command | None:
     """What a transmission of one actuator and one joint with one dof commands; None for others, and where it only reads a state."""
     actuators, joints = [arc for arc in arcs if arc.sign > 0], [arc for arc in arcs if arc.sign < 0]
-    if len(actuators) != 1 or len(joints) != 1 or not _is_transmission(mechanism, actuators[0].target):
+    if len(actuators) != 1 or len(joints) != 1 or not is_transmission(mechanism, actuators[0].target):
         return None
     view = mechanism.joints.get(joints[0].target)
     kind = _kind(drive, mechanism.vertex(actuators[0].target, Actuator))
-    if kind is None or view is None or not _is_scalar(view.joint):
+    if kind is None or view is None or not is_scalar(view.joint):
         return None
     gear = numbers_weight(actuators[0]) or numbers_weight(joints[0])
     return _Command(key, actuators[0].target, kind, Arc(view.id, -1, gear if any(gear) else None))
 
 
-def _is_scalar(joint: Joint) -> bool:
+def is_scalar(joint: Joint) -> bool:
+    """Whether a joint is one hinge or one slide."""
     return len(joint.dofs) == 1 and joint.dofs[0].kind in (DofKind.HINGE, DofKind.SLIDE)
 
 
@@ -132,7 +134,7 @@ def _kind(drive: Drive, actuator: Actuator) -> str | None:
     for parameters in (drive.parameters, actuator.parameters):
         names = [str(value).rpartition("/")[2] for name, value in parameters if name in _INTERFACES]
         if names:
-            return next((_KINDS[name] for name in names if name in _KINDS), None)
+            return next((KINDS[name] for name in names if name in KINDS), None)
     return _USUAL
 
 

@@ -94,6 +94,56 @@ def test_other_transmissions_are_no_actuators(text: str, tmp_path: Path) -> None
     assert drives(model_of(text, tmp_path)) == {}
 
 
+def differential(kind: str, interface: str) -> str:
+    """Two motors with the reductions 10 and -5 that move `j` with the reduction 2 and `k` with the reduction 4."""
+    ends = [
+        f'<{tag} name="{name}"><role>{tag}{number}</role><mechanicalReduction>{reduction}</mechanicalReduction>{more}</{tag}>'
+        for tag, number, name, reduction, more in (
+            ("actuator", 1, "left", 10, ""),
+            ("actuator", 2, "right", -5, ""),
+            ("joint", 1, "j", 2, f"<hardwareInterface>{interface}</hardwareInterface>"),
+            ("joint", 2, "k", 4, f"<offset>0.5</offset><hardwareInterface>{interface}</hardwareInterface>"),
+        )
+    ]
+    return f'<transmission name="wrist"><type>transmission_interface/{kind}</type>{"".join(ends)}</transmission>'
+
+
+@pytest.mark.parametrize(
+    ("kind", "expected"),
+    [
+        ("DifferentialTransmission", (2 * (10 * 0.25 - 5 * -0.5), 4 * (10 * 0.25 + 5 * -0.5))),
+        ("FourBarLinkageTransmission", (2 * 10 * 0.25 - 5 * -0.5, 4 * -5 * -0.5)),
+    ],
+)
+def test_two_motors_of_two_joints_act_on_combinations_of_them(kind: str, expected: tuple[float, float], tmp_path: Path) -> None:
+    """The torques are those of which the work is that of the motors, whose positions ros_control computes from the joints."""
+    model = model_of(arm(differential(kind, "EffortJointInterface")), tmp_path)
+    data = mujoco.MjData(model)
+    data.actuator("left").ctrl, data.actuator("right").ctrl = 0.25, -0.5
+    mujoco.mj_forward(model, data)
+    torques = [data.joint(name).qfrc_actuator[0] for name in "jk"]
+    assert torques == pytest.approx(expected)
+
+
+def test_servos_of_a_differential_hold_both_joints(tmp_path: Path) -> None:
+    model = model_of(arm(differential("DifferentialTransmission", "PositionJointInterface")), tmp_path)
+    data = mujoco.MjData(model)
+    wanted = (0.5, -0.25)
+    data.actuator("left").ctrl = 10 * (2 * wanted[0] + 4 * wanted[1])
+    data.actuator("right").ctrl = -5 * (2 * wanted[0] - 4 * wanted[1])
+    mujoco.mj_step(model, data, 2000)
+    assert [data.joint(name).qpos[0] for name in "jk"] == pytest.approx(wanted, abs=0.02)
+    assert [round(x) for x in model.actuator("left").ctrlrange] == [10 * (-2 - 4), 10 * (4 + 8)]
+
+
+def test_a_differential_comes_back_from_mjcf(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "r.urdf").write_text(arm(differential("DifferentialTransmission", "EffortJointInterface")), "utf-8")
+    hx.convert(tmp_path / "r.urdf", tmp_path / "r.xml", keep="beside")
+    hx.convert(tmp_path / "r.xml", tmp_path / "back.urdf")
+    assert main(["diff", str(tmp_path / "r.urdf"), str(tmp_path / "back.urdf")]) == 0
+    assert "differ" not in capsys.readouterr().out
+
+
 def test_actuators_that_the_user_asks_for_stand_in_for_transmissions(tmp_path: Path) -> None:
     text = arm(transmission("j", "PositionJointInterface", "50"))
     assert {kind for kind, *_ in drives(model_of(text, tmp_path, actuators="motor")).values()} == {"motor"}

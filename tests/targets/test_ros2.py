@@ -159,6 +159,51 @@ def test_an_interface_without_a_type_is_a_command_of_unknown_gains() -> None:
     assert [(key.name, part) for key, part in robot.vertices(Actuator)] == [("j", Actuator("transmission"))]
 
 
+ROS_1 = """<robot name="r">
+  <link name="a"/> <link name="b"/> <link name="c"/> <link name="d"/>
+  <joint name="turn" type="revolute"><parent link="a"/><child link="b"/><limit lower="-1" upper="2" effort="60" velocity="3"/></joint>
+  <joint name="pitch" type="continuous"><parent link="b"/><child link="c"/><limit effort="40" velocity="2"/></joint>
+  <joint name="roll" type="continuous"><parent link="c"/><child link="d"/><limit effort="30" velocity="2"/></joint>
+  <transmission name="turn_trans">
+    <type>transmission_interface/SimpleTransmission</type>
+    <joint name="turn"><hardwareInterface>hardware_interface/PosVelJointInterface</hardwareInterface></joint>
+    <actuator name="turn_motor"><mechanicalReduction>50</mechanicalReduction></actuator>
+  </transmission>
+  <transmission name="wrist_trans">
+    <type>transmission_interface/DifferentialTransmission</type>
+    <actuator name="left"><role>actuator1</role><mechanicalReduction>10</mechanicalReduction></actuator>
+    <actuator name="right"><role>actuator2</role><mechanicalReduction>-10</mechanicalReduction></actuator>
+    <joint name="pitch"><role>joint1</role><offset>0.25</offset><hardwareInterface>EffortJointInterface</hardwareInterface></joint>
+    <joint name="roll"><role>joint2</role><offset>0</offset><hardwareInterface>EffortJointInterface</hardwareInterface></joint>
+  </transmission>
+  <transmission name="odd_trans"><type>acme/Odd</type><joint name="roll"/><actuator name="odd"/></transmission>
+</robot>"""
+
+
+@pytest.mark.unread("HX104")
+def test_transmissions_of_ros_1_are_commands_and_transmissions_of_ros_2(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(ROS_1, "utf-8")
+    (tmp_path / "out").mkdir()
+    done = hx.convert(tmp_path / "r.urdf", tmp_path / "out" / "r.urdf", target="ros2")
+    assert [loss.element for loss in done.losses] == []
+    root = etree.parse(tmp_path / "out" / "r.urdf").getroot()
+    assert [node.get("name") for node in root.findall("transmission")] == ["odd_trans"]
+    warned = [item.message for item in done.report if item.code.id == "HX104"]
+    assert warned == [
+        "1 transmission of ROS 1 (of other kinds, and of joints that are fixed or follow others) stay as they are, "
+        "and ROS 2 does not read them: 'odd_trans' (Odd)"
+    ]
+    system = root.find("ros2_control")
+    commands = {joint.get("name"): [node.get("name") for node in joint.findall("command_interface")] for joint in system.findall("joint")}
+    assert commands == {"turn": ["position", "velocity"], "pitch": ["effort"], "roll": ["effort"]}
+    turn, wrist = system.findall("transmission")
+    assert turn.findtext("plugin") == "transmission_interface/SimpleTransmission"
+    assert turn.findtext("joint/mechanical_reduction") == "50"
+    assert wrist.findtext("plugin") == "transmission_interface/DifferentialTransmission"
+    ends = [(node.get("name"), node.get("role"), *(child.text for child in node)) for node in wrist if node.tag != "plugin"]
+    assert ends == [("left", "actuator1", "10"), ("right", "actuator2", "-10"), ("pitch", "joint1", "0.25"), ("roll", "joint2")]
+
+
 @pytest.mark.parametrize("text", [FIXED, FLOATING])
 def test_the_way_through_urdf_and_srdf_and_back_gives_the_same_torques(text: str, tmp_path: Path) -> None:
     urdf = package(text, tmp_path)

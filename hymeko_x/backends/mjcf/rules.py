@@ -19,6 +19,7 @@ from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Actuator, DofKind
 from hymeko_x.rewrite.actuators import drop_foreign_actuators, drop_idle_actuators
 from hymeko_x.rewrite.couplings import drop_odd_tendons, make_couplings_scalar, make_tendons_sound, name_wrapped_shapes
+from hymeko_x.rewrite.differentials import drive_by_differentials
 from hymeko_x.rewrite.fragments import mount_sensors_of_fragments
 from hymeko_x.rewrite.inertia import fill_tensors, give_moving_bodies_mass, make_tensors_physical
 from hymeko_x.rewrite.joints import (
@@ -51,7 +52,7 @@ def write_poses_as_keyframes(mechanism: Mechanism, _context: Context) -> Mechani
 
 def _drive_by_transmissions(mechanism: Mechanism, context: Context) -> Mechanism:
     """Transmissions are actuators; as many are servos, the integrator is one that keeps them calm."""
-    driven = drive_by_transmissions(mechanism, context)
+    driven = drive_by_differentials(drive_by_transmissions(mechanism, context), context)
     return driven if driven is mechanism else integrate_implicitly(driven, replace(context, reason="transmissions"))
 
 

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.backends.urdf.ros_control import add_transmission, followers, transmissions, with_commands, without_followers
 from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import urdf as urdf_words
 from hymeko_x.formats.urdf import ros2_control as words
 from hymeko_x.ir.mechanism import ROOT, Extra, end_of, numbers_weight
-from hymeko_x.ir.parts import Actuator, Coupling, Drive, Stance
+from hymeko_x.ir.parts import Actuator, Drive, Stance
 from hymeko_x.ir.values import number_text, numbers_text
 from hymeko_x.xml.printing import Tag, ready
 from hymeko_x.xml.text import escaped
@@ -19,6 +20,7 @@ from hymeko_x.xml.text import escaped
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from hymeko_x.backends.urdf.ros_control import Transmission
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import Dof
     from hymeko_x.rewrite.context import Context
@@ -38,13 +40,36 @@ def declare_ros2_control(mechanism: Mechanism, context: Context) -> Mechanism:
         names = listed([f"'{key.name}'" for key in left], _SHOWN)
         message = f"{counted(len(left), 'actuator')} without a single joint and a command of its own, and without <{words.TAG}>: {names}"
         context.report.warn(codes.NOT_SAID, message, element=str(left[0]))
-    if not commands:
+    moved = _moved(mechanism, commands, context)
+    if not commands and not moved:
         return mechanism
-    context.report.note(codes.FOR_TARGET, f"<{words.TAG}> has the drives of {counted(len(commands), 'joint')} ({context.reason})")
-    text = ready(_system(mechanism, commands), 1)
+    driven = len(commands) + sum(len(one.joints) for one in moved)
+    context.report.note(codes.FOR_TARGET, f"<{words.TAG}> has the drives of {counted(driven, 'joint')} ({context.reason})")
+    text = ready(_system(mechanism, commands, moved), 1)
     last = max(len(mechanism.graph.vertices) + len(mechanism.graph.edges), *(extra.index for extra in own), 0)
     extra = Extra(urdf_words.FORMAT, "", text, last + 1)
-    return replace(mechanism, extras={**mechanism.extras, ROOT: (*own, extra)})
+    ends = [arc.target for one in moved for arc in one.joints]
+    mechanism = with_commands(mechanism, moved, {joint: _all_limits(mechanism, joint) for joint in ends}) if moved else mechanism
+    return replace(mechanism, extras={**mechanism.extras, ROOT: (*mechanism.extras.get(ROOT, ()), extra)})
+
+
+def _moved(mechanism: Mechanism, commands: dict[Id, list[Command]], context: Context) -> list[Transmission]:
+    """The transmissions of ROS 1 that are written in the system, of joints that nothing else drives; the others are reported."""
+    found, left = transmissions(mechanism)
+    moved = [one for one in without_followers(found, followers(mechanism)) if commands.keys().isdisjoint(one.commands)]
+    left += [one.key for one in found if one not in moved]
+    if left:
+        kinds = {key: drive.kind.rpartition("/")[2] for key, drive, _ in mechanism.edges(Drive)}
+        names = listed([f"'{key.name}' ({kinds[key]})" for key in left], _SHOWN)
+        why = "of other kinds, and of joints that are fixed or follow others"
+        message = f"{counted(len(left), 'transmission')} of ROS 1 ({why}) stay as they are, and ROS 2 does not read them: {names}"
+        context.report.warn(codes.NOT_SAID, message, element=str(left[0]))
+    return moved
+
+
+def _all_limits(mechanism: Mechanism, joint: Id) -> dict[str, tuple[tuple[str, float], ...]]:
+    dof = mechanism.joints[joint].joint.dofs[0]
+    return {name: tuple(_limits(name, dof)) for name in (words.POSITION, words.VELOCITY, words.EFFORT)}
 
 
 def _commands(mechanism: Mechanism) -> tuple[dict[Id, list[Command]], list[Id]]:
@@ -66,7 +91,7 @@ def _commands(mechanism: Mechanism) -> tuple[dict[Id, list[Command]], list[Id]]:
     return found, left
 
 
-def _system(mechanism: Mechanism, commands: dict[Id, list[Command]]) -> Tag:
+def _system(mechanism: Mechanism, commands: dict[Id, list[Command]], moved: list[Transmission]) -> Tag:
     system = Tag(words.TAG, {"name": mechanism.name, "type": "system"})
     system.add("hardware").add("plugin").children.append(words.PLUGIN)
     start = _start(mechanism)
@@ -79,11 +104,22 @@ def _system(mechanism: Mechanism, commands: dict[Id, list[Command]]) -> Tag:
             _add_parameters(command, [(words.NAME, key.name), (words.TYPE, actuator.kind)])
             _add_parameters(command, [(words.GEAR, gear)] if gear else [])
             _add_parameters(command, actuator.parameters)
-        for interface in (words.POSITION, words.VELOCITY, words.EFFORT):
-            state = tag.add("state_interface", name=interface)
-            if interface == words.POSITION and start.get(joint):
-                _add_parameters(state, [("initial_value", start[joint])])
+        _add_states(tag, start.get(joint))
+    for joint, names in ((joint, names) for one in moved for joint, names in one.commands.items()):
+        tag = system.add("joint", name=joint.name)
+        for interface in names:
+            _add_parameters(tag.add("command_interface", name=interface), _all_limits(mechanism, joint)[interface])
+        _add_states(tag, start.get(joint))
+    for one in moved:
+        add_transmission(system, one)
     return system
+
+
+def _add_states(tag: Tag, start: float | None) -> None:
+    for interface in (words.POSITION, words.VELOCITY, words.EFFORT):
+        state = tag.add("state_interface", name=interface)
+        if interface == words.POSITION and start:
+            _add_parameters(state, [("initial_value", start)])
 
 
 def _limits(interface: str, dof: Dof) -> Iterator[tuple[str, float]]:
@@ -95,7 +131,7 @@ def _limits(interface: str, dof: Dof) -> Iterator[tuple[str, float]]:
 
 def _start(mechanism: Mechanism) -> dict[Id, float]:
     """The coordinate of each joint in the first named pose; a follower has none of its own."""
-    following = {arc.target for _, _, arcs in mechanism.edges(Coupling) for arc in arcs if arc.sign > 0}
+    following = followers(mechanism)
     first = next((arcs for _, _, arcs in mechanism.edges(Stance)), ())
     values = {arc.target: numbers_weight(arc) for arc in first if arc.sign == 0 and arc.target not in following}
     return {joint: numbers[0] for joint, numbers in values.items() if len(numbers) == 1}

@@ -10,6 +10,7 @@ from hymeko_x import codes
 from hymeko_x.formats.usd.contacts import GROUP, GROUPED, GROUPS, pairs_digest
 from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Contact, Loop
+from hymeko_x.rewrite.differentials import drive_by_differentials
 from hymeko_x.rewrite.fragments import mount_sensors_of_fragments
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
@@ -59,6 +60,7 @@ RULES: tuple[Rule, ...] = (
     expand_screws,
     drop_loops_without_bodies,
     drive_by_transmissions,
+    drive_by_differentials,
     drop_stale_groups,
     drop_unused_assets,
 )

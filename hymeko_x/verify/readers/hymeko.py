@@ -20,6 +20,7 @@ from hymeko_x.ir.mechanism import Id, JointView, Mechanism, ShapeView, numbers_w
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.solids import evenly_spread
 from hymeko_x.rewrite.context import Options
+from hymeko_x.rewrite.differentials import combinations
 from hymeko_x.rewrite.transmissions import commanded
 from hymeko_x.source import Source
 from hymeko_x.verify import model as m
@@ -99,7 +100,7 @@ def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> Kinema
 def _actuators(mechanism: Mechanism) -> Iterator[m.Record]:
     """The actuators; of transmissions those that simulators have, without their law, which the text does not give."""
     yield from _records(mechanism, [key for key, part in mechanism.vertices(parts.Actuator) if part.kind != _TRANSMISSION])
-    yield from (m.Record(key.name, (), ()) for key in commanded(mechanism))
+    yield from (m.Record(key.name, (), ()) for key in (*commanded(mechanism), *combinations(mechanism)))
 
 
 def _records(mechanism: Mechanism, keys: Iterable[Id]) -> Iterator[m.Record]:
@@ -286,8 +287,9 @@ def _mesh(mechanism: Mechanism, view: ShapeView) -> m.Surface | m.MeshFile | Non
 
 
 def _tendons(mechanism: Mechanism, dofs: Mapping[tuple[Id, str], int], sites: Placed, numbers: Mapping[Id, int]) -> Iterator[Tendon]:
-    """Every tendon of whose steps all targets are there."""
+    """Every tendon of whose steps all targets are there, and those on which transmissions of two joints are written."""
     found = list(mechanism.edges(parts.Tendon))
+    found += [(key, parts.Tendon(roles.FIXED), arcs) for key, arcs in combinations(mechanism).items()]
     bodies = [(key, views) for key, views in mechanism.shapes.items() if found and key in numbers]
     shapes = {view.id: (numbers[key], _matrix(view.pose)) for key, views in bodies for view in views}
     for key, tendon, arcs in found:
