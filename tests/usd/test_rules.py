@@ -76,6 +76,10 @@ def test_an_ellipsoid_collides_as_the_hull_of_a_mesh_and_is_an_ellipsoid_again(t
     assert prims["shell"].GetTypeName() == "Mesh"
     assert UsdPhysics.MeshCollisionAPI(prims["shell"]).GetApproximationAttr().Get() == "convexHull"
     assert UsdGeom.Boundable(prims["shell"]).ComputeLocalBound(0, "default").ComputeAlignedRange().GetMax()[2] == pytest.approx(0.04)
+    shell = UsdGeom.Mesh(prims["shell"])
+    normals, points = np.array(shell.GetNormalsAttr().Get()), np.array(shell.GetPointsAttr().Get())
+    middles = points[np.array(shell.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)].mean(axis=1)
+    assert np.einsum("ij,ij->i", normals, middles).min() > 0.9  # one for each triangle of the unit ball, outwards
     assert prims["shine"].GetTypeName() == "Sphere"
     back = hx.load(tmp_path / "egg.usda").mechanism
     sizes = {view.shape.name: view.shape.geometry for views in back.shapes.values() for view in views}

@@ -53,13 +53,13 @@ def write_mesh_shape(sheet: UsdSheet, spec: Any, view: ShapeView, users: dict[Id
 
 def _write_attributes(spec: Prim, mechanism: Mechanism, shape: Id, mesh: Mesh, surface: Triangles) -> None:
     """Normals and texture coordinates of a mesh, as far as the prim of the shape gets them."""
-    if _has_own(mechanism, shape, words.NORMALS):
-        _write_normals(spec, surface)
-    if _has_own(mechanism, shape, words.TEXCOORDS):
+    if has_own(mechanism, shape, words.NORMALS):
+        write_normals(spec, surface)
+    if has_own(mechanism, shape, words.TEXCOORDS):
         _write_places(spec, mesh)
 
 
-def _has_own(mechanism: Mechanism, shape: Id, notation: Notation[bool]) -> bool:
+def has_own(mechanism: Mechanism, shape: Id, notation: Notation[bool]) -> bool:
     """Whether the prim of a mesh gets such an attribute: new prims do, those from a stage where they had it."""
     return mechanism.notation(shape, words.PATH) is None or mechanism.notation(shape, notation) is not None
 
@@ -95,7 +95,7 @@ def write_triangles(prim: Prim, surface: Triangles) -> None:
     put(prim, "extent", T.Float3Array, Vt.Vec3fArray.FromNumpy(box))
 
 
-def _write_normals(prim: Prim, surface: Triangles) -> None:
+def write_normals(prim: Prim, surface: Triangles) -> None:
     """One normal for each triangle, for programs that compute none of their own; a degenerate triangle has some unit vector."""
     put(prim, "normals", T.Normal3fArray, Vt.Vec3fArray.FromNumpy(face_normals(*surface)))
     prim.interpolation["normals"] = "uniform"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pxr import Gf, Vt
 
 from hymeko_x.backends.usd.materials import bind
-from hymeko_x.backends.usd.meshes import write_mesh_shape, write_subsets, write_triangles
+from hymeko_x.backends.usd.meshes import has_own, write_mesh_shape, write_normals, write_subsets, write_triangles
 from hymeko_x.backends.usd.sheet import T, apply, put
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import shapes as gprims
@@ -54,6 +54,8 @@ def write_shape(sheet: UsdSheet, view: ShapeView, users: dict[Id, int], shared: 
             spec.info.pop("displayName", None)
     if prim is not None:
         _write_primitive(spec, prim)
+    if prim is not None and prim.kind == "Mesh" and has_own(sheet.mechanism, view.id, words.NORMALS):
+        write_normals(spec, gprims.ball())
     scale = write_mesh_shape(sheet, spec, view, users, shared) if isinstance(view.shape.geometry, MeshShape) else None
     if not is_body:
         sheet.set_pose(spec, gprim_pose(view, prim), scale if prim is None else _unless_one(prim.scale), on=view.body)

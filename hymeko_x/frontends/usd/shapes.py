@@ -60,7 +60,7 @@ def read_shape(prim: Prim, builder: UsdBuilder) -> tuple[Id, ReadShape] | None:
     key = builder.new_id(prim, "shape")
     if authored is not None and authored != gprims.default_gprim(geometry, role):
         builder.note(key, gprims.GPRIM, authored)
-    if mesh is not None and read_normals(prim, builder):
+    if prim.kind == "Mesh" and read_normals(prim, builder):
         builder.note(key, words.NORMALS, True)
     if mesh is not None and read_st_as_written(prim, builder):
         builder.note(key, words.TEXCOORDS, True)
