@@ -118,6 +118,8 @@ WARNINGS: Mapping[Code, str] = {
     codes.MISSING_PART: "a shape without geometry is none, a missing mass stays unspecified, and a stage without bodies is a scene",
     codes.MATERIAL_REDEFINED: "both appearances are kept, and nothing but appearance depends on it",
     codes.REPEATED: "the first one counts, as in the format's reference reader",
+    codes.BAD_MASS: "a file holds it, and what is done with the robot decides whether it matters",
+    codes.BAD_TENSOR: "a file holds it, and what is done with the robot decides whether it matters",
     codes.PACKAGE_NOT_FOUND: "a folder of nearly the same name has the file that is asked for",
     codes.NOT_URDF: "the error about the missing links follows",
     codes.XACRO_SAID: "the library says the same to its own users, and goes on",

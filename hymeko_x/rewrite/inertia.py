@@ -137,6 +137,15 @@ def principal_moments(tensor: Tensor) -> Vec3:
     return (low, middle, high)
 
 
+def is_physical(tensor: Tensor) -> bool:
+    """Whether a mass distribution can have the tensor, up to the rounding of its principal moments."""
+    if any(tensor[3:]) and _is_well_inside(tensor):
+        return True
+    low, middle, high = principal_moments(tensor)
+    rounding = 1e-15 * (abs(low) + abs(middle) + abs(high))
+    return low >= -rounding and low + middle >= high - rounding
+
+
 def physical(tensor: Tensor) -> Tensor:
     """The nearest tensor (in the Frobenius norm) that a mass distribution can have; the same one where it can already.
 

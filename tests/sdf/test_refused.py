@@ -8,6 +8,7 @@ import pytest
 
 import hymeko_x as hx
 from hymeko_x.diagnostics import Report
+from tests.sdf.names import is_accepted, library
 from tests.sdf.samples import TWO, model
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ def visual(inside: str) -> str:
 
 BALL = "<geometry><sphere><radius>1</radius></sphere></geometry>"
 LINK = '<link name="l"/>'
+_INERTIA = "<inertial><mass>{}</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>{}</izz></inertia></inertial>"
 PART = f'<model name="m">{LINK}</model>'
 
 RULES = {
@@ -57,6 +59,13 @@ RULES = {
     "a reserved name": (model(f'{LINK}<frame name="__frame__"/>'), "HX022"),
     "a colon in a name": (model('<link name="a::b"/>'), "HX022"),
     "a script without a file": (visual(f'<visual name="v">{BALL}<material><script><name>Red</name></script></material></visual>'), "HX045"),
+    "a script without a name": (visual(f'<visual name="v">{BALL}<material><script><uri>a</uri></script></material></visual>'), "HX045"),
+    "a visual with a reserved name": (visual(f'<visual name="__v__">{BALL}</visual>'), "HX022"),
+    "a sensor that is called as the world": (visual('<sensor name="world" type="imu"/>'), "HX022"),
+    "two sensors of one name on a joint": (joint(axis='<sensor name="s" type="force_torque"/>' * 2, kind="fixed"), "HX023"),
+    "a model and a light without a world": (f'<sdf version="1.9">{PART}<light name="l" type="point"/></sdf>', "HX047"),
+    "a negative mass": (visual(_INERTIA.format(-1, 1)), "HX315"),
+    "an inertia that no body has": (visual(_INERTIA.format(1, 2.1)), "HX316"),
     "a pose of words": (model('<link name="a"><pose>bad 0 0 0 0 0</pose></link>'), "HX020"),
     "a colour of words": (visual(f'<visual name="v">{BALL}<material><diffuse>red 0 0 1</diffuse></material></visual>'), "HX020"),
     "a frame of a pose that is not there": (model('<link name="a"><pose relative_to="x"/></link>'), "HX040"),
@@ -107,7 +116,11 @@ def test_it_is_reported(rule: str) -> None:
     assert code in [diagnostic.code.id for diagnostic in report]
 
 
-@pytest.mark.parametrize("rule", RULES)
+ACCEPTED_BY_DRAKE = ("a negative mass", "an inertia that no body has")
+"""Drake takes a ball of water instead of what libsdformat refuses."""
+
+
+@pytest.mark.parametrize("rule", [rule for rule in RULES if rule not in ACCEPTED_BY_DRAKE])
 def test_libsdformat_refuses_it(rule: str, tmp_path: Path) -> None:
     pytest.importorskip("pydrake")
     from hymeko_x.verify import model_of
@@ -115,3 +128,10 @@ def test_libsdformat_refuses_it(rule: str, tmp_path: Path) -> None:
     (tmp_path / "m.sdf").write_text(RULES[rule][0], "utf-8")
     with pytest.raises(hx.Refusal, match="HX302"):
         model_of(tmp_path / "m.sdf")
+
+
+@pytest.mark.skipif(library() is None, reason="libsdformat is not installed")
+@pytest.mark.parametrize("rule", ACCEPTED_BY_DRAKE)
+def test_its_own_check_refuses_it(rule: str, tmp_path: Path) -> None:
+    (tmp_path / "m.sdf").write_text(RULES[rule][0], "utf-8")
+    assert not is_accepted(str(tmp_path / "m.sdf"))

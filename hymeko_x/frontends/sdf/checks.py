@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.formats import sdf as words
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
 _CONTENT = ("link", "model", "include")
 _OWN_NAMES = ("plugin",)
 """Elements whose names need not differ."""
+_NO_REFERENCES = ("visual", "collision", "sensor", "light")
+"""Named elements that no other one refers to; the readers of the others report reserved names."""
 _RENAMED = ("link", "joint", "frame", "model")
 """Elements that get another name where one of their own kind has it, which their readers report."""
 
@@ -27,14 +30,23 @@ def check_models(place: Node, report: Report) -> list[Node]:
     if place.tag == "sdf" and len(tops) > 1:
         message = f"the file has {len(tops)} models and no <world> around them; libsdformat reads the first one alone"
         report.warn(codes.REPEATED, message, tops[1].origin)
+    _check_root(place, report)
     stack = [place]
     while stack:
         node = stack.pop()
         shared += _check_names(node, report)
         if node.tag == "model":
             _check_links(node, report)
-        stack += [child for child in reversed(node.children) if child.tag in ("model", "link")]
+        stack += [child for child in reversed(node.children) if child.tag in ("model", "link", "joint")]
     return shared
+
+
+def _check_root(place: Node, report: Report) -> None:
+    """A file without a world has a model, a light or an actor."""
+    kinds = list(dict.fromkeys(child.tag for child in place.children if child.tag in ("model", "light", "actor")))
+    if place.tag == "sdf" and len(kinds) > 1:
+        message = f"the file has a <{'> and a <'.join(kinds)}> and no <world> around them; libsdformat refuses it"
+        report.warn(codes.REPEATED, message, place.origin)
 
 
 def _check_links(node: Node, report: Report) -> None:
@@ -49,6 +61,9 @@ def _check_names(node: Node, report: Report) -> list[Node]:
     shared: list[Node] = []
     for child in node.children:
         name = "" if child.tag in _OWN_NAMES else child.attributes.get("name", "")
+        if child.tag in _NO_REFERENCES and (name == words.WORLD_FRAME or (name.startswith("__") and name.endswith("__"))):
+            message = f"the name '{name}' of a <{child.tag}> is reserved in SDF, and libsdformat refuses it; it is kept"
+            report.warn(codes.BAD_NAME, message, child.origin)
         other = taken.get(name)
         taken.setdefault(name, child)
         if not name or other is None or (other.tag == child.tag and child.tag in _RENAMED):

@@ -172,7 +172,11 @@ def _model(path: str, include: Node, found: Included) -> Node | None:
         report.error(codes.INCLUDE_NOT_FOUND, f"'{path}' cannot be read: {reason}; the <include> is kept as written", include.origin)
         return None
     root = document.root
-    model = next((node for node in root.children if node.tag == "model"), None) if root.tag == "sdf" else None
+    tops = [node for node in root.children if node.tag in ("model", "actor", "light")] if root.tag == "sdf" else []
+    model = next((node for node in tops if node.tag == "model"), None)
+    if len(tops) > 1 and model is not None:
+        message = f"'{path}' has more than one <model>, <actor> or <light>, which libsdformat refuses; its first model is included"
+        report.warn(codes.REPEATED, message, include.origin)
     if model is None:
         message = f"'{path}' has no <model>; the <include> is kept as written"
         report.warn(codes.MISSING_PART, message, include.origin)

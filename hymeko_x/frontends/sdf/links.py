@@ -16,6 +16,7 @@ from hymeko_x.ir.mechanism import ShapeView, pose_weight
 from hymeko_x.ir.parts import Body, Inertial, InertialWritten, Shape
 from hymeko_x.ir.solids import solid_of_colliders
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, rotate_tensor
+from hymeko_x.rewrite.inertia import is_physical
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
@@ -60,6 +61,12 @@ def _read_inertial(link: Node, key: Id, model: Model, builder: SdfBuilder) -> In
     mass = builder.child_value(node, "mass", NUMBER, 1.0, key, "inertial/mass")
     xx, yy, zz, xy, xz, yz = (builder.value(node, field, key, "inertial/") for field in TENSOR)
     tensor: Tensor = (xx, yy, zz, xy, xz, yz)
+    if mass < 0.0:
+        builder.warn(codes.BAD_MASS, node, f"{link.subject}: the mass is negative, which libsdformat refuses; it is kept")
+    if not is_physical(tensor):
+        builder.warn(
+            codes.BAD_TENSOR, node, f"{link.subject}: no body can have this inertia tensor, and libsdformat refuses it; it is kept"
+        )
     if pose.quat == NO_ROTATION:
         return Inertial(mass, pose.xyz, tensor)
     return Inertial(mass, pose.xyz, rotate_tensor(pose.quat, tensor), InertialWritten(pose, tensor))

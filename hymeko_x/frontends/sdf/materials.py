@@ -25,10 +25,11 @@ def read_material(visual: Node, key: Id, builder: SdfBuilder) -> tuple[Rgba | No
         return None, None
     node.taken = True
     script = node.child("script")
-    if script is not None and not any(child.tag == "uri" and (child.text or "").strip() for child in script.children):
-        builder.warn(
-            codes.MISSING_PART, script, f"{visual.subject}: <script> without a <uri>, which libsdformat refuses, is kept as written"
-        )
+    texts = {} if script is None else {child.tag: (child.text or "").strip() for child in script.children}
+    missing = [] if script is None else [f"<{tag}>" for tag in ("uri", "name") if texts.get(tag, "") in ("", "__default__")]
+    if script is not None and missing:
+        message = f"{visual.subject}: <script> without a {' and a '.join(missing)}, which libsdformat refuses, is kept as written"
+        builder.warn(codes.MISSING_PART, script, message)
     rgba = builder.child_value(node, "diffuse", COLOUR, None, key, "material/diffuse")
     pbr = node.child("pbr")
     metal = None if pbr is None else pbr.child("metal")
