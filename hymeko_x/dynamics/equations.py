@@ -9,9 +9,8 @@ from msgspec import Struct
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.dynamics.laws import evaluate
 from hymeko_x.dynamics.layout import PID_GAINS, Layout, layout_of, tex, variable
-from hymeko_x.dynamics.numbers import add, dot, factorize, solve, times
+from hymeko_x.dynamics.numbers import add, dot, evaluate, factorize, solve, times
 from hymeko_x.dynamics.system import System, Variable
 from hymeko_x.ir import lumped
 from hymeko_x.networks.domains import UNITS

@@ -5,6 +5,8 @@ Every equation of this room is written once, with ``+ - * /`` and the functions 
 
 from __future__ import annotations
 
+import ast
+import operator
 from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -133,3 +135,29 @@ def solve(factors: tuple[Matrix, list[Number]], right: Sequence[Number]) -> list
     for i in reversed(range(n)):
         x[i] = add(x[i], -1 * dot([lower[k][i] for k in range(i + 1, n)], x[i + 1 :]))
     return x
+
+
+# ---- laws --------------------------------------------------------------------------------------------------------------------------
+
+
+_OPERATORS: Mapping[type[ast.operator], Callable[[Number, Number], Number]] = MappingProxyType(
+    {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow}
+)
+
+
+def evaluate(tree: ast.expr, values: Mapping[str, Number], numbers: Numbers) -> Number:
+    """The value of a force's law, which is an expression, its names standing for these numbers."""
+    match tree:
+        case ast.Constant(value=int() | float() as number):
+            return numbers.exact(float(number)) if isinstance(number, float) else number
+        case ast.Name(id=name):
+            return values[name]
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return -evaluate(operand, values, numbers)
+        case ast.UnaryOp(operand=operand):
+            return evaluate(operand, values, numbers)
+        case ast.BinOp(left=left, op=op, right=right):
+            return _OPERATORS[type(op)](evaluate(left, values, numbers), evaluate(right, values, numbers))
+        case ast.Call(func=ast.Name(id=name), args=[argument]):
+            return numbers.functions[name](evaluate(argument, values, numbers))
+    raise AssertionError(ast.dump(tree))

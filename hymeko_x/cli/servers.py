@@ -1,4 +1,4 @@
-"""`hymeko-x mcp`: the tools for language models, on standard input and output."""
+"""`hymeko-x lsp`, `mcp`: servers for editors and for language models, on standard input and output."""
 
 from __future__ import annotations
 
@@ -10,6 +10,19 @@ from hymeko_x.cli.inputs import folder
 
 if TYPE_CHECKING:
     import argparse
+
+
+def lsp_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `lsp`."""
+    parser.add_argument("--stdio", action="store_true", help="speak on standard input and output, as it always does")
+
+
+def run_lsp(chosen: argparse.Namespace) -> int:
+    """Serve until the editor ends it."""
+    from hymeko_x.server.lsp import make_server
+
+    make_server().start_io()
+    return exits.DONE
 
 
 def mcp_arguments(parser: argparse.ArgumentParser) -> None:
