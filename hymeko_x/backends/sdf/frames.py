@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
-from hymeko_x.ir.kinematics import reference_poses
+from hymeko_x.ir.kinematics import below, reference_poses
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Frame, Loop
 from hymeko_x.ir.values import IDENTITY, compose, inverse
@@ -34,7 +34,7 @@ class Places:
         """The pose of every frame that a pose may be relative to."""
         mechanism = self._mechanism
         poses = reference_poses(mechanism)
-        poses[MODEL] = mechanism.notation(ROOT, notations.MODEL) or IDENTITY
+        poses[MODEL] = self._model
         for key, view in self._joints.items():
             poses[key] = compose(poses.get(view.parent, IDENTITY), view.parent_pose)
         for key, _, arcs in mechanism.edges(Loop):
@@ -43,6 +43,19 @@ class Places:
             for mount in views:
                 poses[mount.thing] = compose(poses.get(body, IDENTITY), mount.pose)
         return poses
+
+    @property
+    def _model(self) -> Pose:
+        return self._mechanism.notation(ROOT, notations.MODEL) or IDENTITY
+
+    def _of_base(self, frame: Id) -> Pose | None:
+        """The pose of a base, or of the frame of the model, in the world, without those of all others; None for other frames."""
+        if frame == MODEL:
+            return self._model
+        above = self._mechanism.parent_joint.get(frame)
+        if above is None:
+            return IDENTITY if frame.kind == "body" else None
+        return below(IDENTITY, above.parent_pose, above.child_pose) if above.parent == WORLD else None
 
     @property
     def _joints(self) -> Mapping[Id, JointView]:
@@ -60,6 +73,9 @@ class Places:
             return inverse(above.child_pose)
         if base == self._body_below(frame) and frame.kind == "frame":
             return self._mount_pose(frame)
+        near = self._of_base(frame) if base in (WORLD, MODEL) and self._model == IDENTITY else None
+        if near is not None:
+            return clean_pose(near)
         poses = self.in_world
         return clean_pose(compose(inverse(poses.get(base, IDENTITY)), poses.get(frame, IDENTITY)))
 

@@ -50,7 +50,7 @@ def joint_tag(key: Id, scope: str, sheet: SdfSheet) -> Tag:
     names = _end_names(key, parent, child, scope, sheet)
     sheet.add_pose(tag, key, scope, sheet.places.find(scope, names[1]) or child, base)
     for name, text in zip(("parent", "child"), names, strict=True):
-        tag.add(name).children.append(escaped(text))
+        sheet.add_text(tag, name, escaped(text))
     for number, dof in enumerate(joint.dofs):
         _add_dof(tag, dof, words.AXES[number], word, key, scope, sheet)
     sheet.put_back(tag, key)

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.values import Tensor
 
+_OPTIONAL = (Field("mass", "mass", NUMBER, 1.0), *TENSOR)
+_REQUIRED = tuple([field._replace(default=None) if field.default else field for field in _OPTIONAL])
+"""Mass and moments are always written, unless the author of an SDF file left them out; products of zero never."""
 _DEFAULT = Inertial(1.0, tensor=(1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
 
 
@@ -73,10 +76,8 @@ def _add_inertial(link: Tag, key: Id, sheet: SdfSheet) -> None:
     frame, tensor = _as_written(inertial)
     _add_pose(tag, frame, texts)
     mass = 1.0 if inertial.mass is None else inertial.mass
-    sheet.put(tag, Field("mass", "mass", NUMBER, 1.0 if sheet.from_sdf else None), mass, texts, "inertial/")
-    for field, value in zip(TENSOR, tensor, strict=True):
-        is_left_out = sheet.from_sdf or not field.default
-        sheet.put(tag, field if is_left_out else field._replace(default=None), value, texts, "inertial/")
+    for field, value in zip(_OPTIONAL if sheet.from_sdf else _REQUIRED, (mass, *tensor), strict=True):
+        sheet.put(tag, field, value, texts, "inertial/")
 
 
 def _as_written(inertial: Inertial) -> tuple[Pose, Tensor]:

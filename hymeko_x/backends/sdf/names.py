@@ -52,7 +52,7 @@ def make_names_unique_in_models(mechanism: Mechanism, context: Context) -> Mecha
     order = ("body", "joint", "loop", "frame")
     named = [key for key in (*mechanism.graph.vertices, *mechanism.graph.edges) if key.kind in order]
     for key in sorted(named, key=lambda key: order.index(key.kind)):
-        if key in unwritten or mechanism.notation(key, notations.SHARED):
+        if key in unwritten or (is_from_sdf and mechanism.notation(key, notations.SHARED)):
             continue
         scope = nesting.scope_of(key)
         wanted = key.name if is_from_sdf else scope + _free_of_marks(key.name.removeprefix(scope), key.kind)
@@ -94,6 +94,8 @@ def make_names_unique_on_links(mechanism: Mechanism, context: Context) -> Mechan
     names: list[str] = []
     for body, views in mechanism.shapes.items():
         beside = (*_names_beside(mechanism, body), *(words.split_scope(key.name)[1] for key in mounted.get(body, ())))
+        if not beside and all(view.shape.name is None for view in views):
+            continue
         for view, name in _renamed_shapes(views, dict.fromkeys(beside, ""), mechanism):
             edges[view.id] = replace(mechanism.graph.edges[view.id], data=replace(view.shape, name=name))
             names.append(f"'{name}'")

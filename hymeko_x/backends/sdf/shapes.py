@@ -20,6 +20,16 @@ if TYPE_CHECKING:
 
 _MISSING = object()
 """No value equals it: what has no default is always written."""
+_BOX = Field("box/size", "size", VECTOR, _MISSING)
+_SPHERE = Field("sphere/radius", "radius", NUMBER, _MISSING)
+_CYLINDER = Field("cylinder/radius", "radius", NUMBER, _MISSING), Field("cylinder/length", "length", NUMBER, _MISSING)
+_CAPSULE = Field("capsule/radius", "radius", NUMBER, _MISSING), Field("capsule/length", "length", NUMBER, _MISSING)
+_ELLIPSOID = Field("ellipsoid/radii", "radii", VECTOR, _MISSING)
+_MU = Field("surface/friction/ode/mu", "friction", NUMBER)
+_DENSITY = Field("density", "density", NUMBER)
+_URI = Field("uri", "uri", TEXT)
+_SCALE = Field("scale", "scale", VECTOR, (1.0, 1.0, 1.0))
+_DIFFUSE = Field("diffuse", "rgba", COLOUR)
 
 
 def shape_tag(view: ShapeView, name: str, number: int, scope: str, sheet: SdfSheet) -> Tag:
@@ -33,9 +43,9 @@ def shape_tag(view: ShapeView, name: str, number: int, scope: str, sheet: SdfShe
     if view.shape.role is Role.VISUAL:
         _add_material(tag, view, texts, sheet)
     elif view.shape.friction:
-        sheet.put(tag, Field("surface/friction/ode/mu", "friction", NUMBER), view.shape.friction[0], texts)
+        sheet.put(tag, _MU, view.shape.friction[0], texts)
     if view.shape.density is not None and "density" in texts:
-        sheet.put(tag, Field("density", "density", NUMBER), view.shape.density, texts)
+        sheet.put(tag, _DENSITY, view.shape.density, texts)
     sheet.put_back(tag, view.id)
     return tag
 
@@ -53,26 +63,26 @@ def _pose_of(view: ShapeView, texts: Mapping[str, str]) -> tuple[Pose, str | Non
 
 
 def _add_geometry(tag: Tag, view: ShapeView, normal: str | None, texts: Mapping[str, str], sheet: SdfSheet) -> None:
-    values: list[tuple[str, object, object]] = []
+    values: list[tuple[Field, object]] = []
     match view.shape.geometry:
         case Box(size):
-            values = [("box/size", size, VECTOR)]
+            values = [(_BOX, size)]
         case Sphere(radius):
-            values = [("sphere/radius", radius, NUMBER)]
+            values = [(_SPHERE, radius)]
         case Cylinder(radius, length):
-            values = [("cylinder/radius", radius, NUMBER), ("cylinder/length", length, NUMBER)]
+            values = [(_CYLINDER[0], radius), (_CYLINDER[1], length)]
         case Capsule(radius, length):
-            values = [("capsule/radius", radius, NUMBER), ("capsule/length", length, NUMBER)]
+            values = [(_CAPSULE[0], radius), (_CAPSULE[1], length)]
         case Ellipsoid(radii):
-            values = [("ellipsoid/radii", radii, VECTOR)]
+            values = [(_ELLIPSOID, radii)]
         case Plane((x, y)):
             _add_plane(tag.add("plane"), (2.0 * x, 2.0 * y), normal, texts, sheet)
         case MeshShape():
             _add_mesh(tag.add("mesh"), view, texts, sheet)
         case _:
             return  # what SDF alone has is an extra
-    for path, value, codec in values:
-        sheet.put(tag, Field(path, "", codec, _MISSING), value, texts, "geometry/")  # type: ignore[arg-type]
+    for field, value in values:
+        sheet.put(tag, field, value, texts, "geometry/")
 
 
 def _add_plane(tag: Tag, size: tuple[float, float], normal: str | None, texts: Mapping[str, str], sheet: SdfSheet) -> None:
@@ -89,8 +99,8 @@ def _add_mesh(tag: Tag, view: ShapeView, texts: Mapping[str, str], sheet: SdfShe
     mesh = sheet.mechanism.vertex(view.mesh, Mesh)
     uri = sheet.mesh_files.get(view.mesh, mesh.uri)
     if uri is not None:
-        sheet.put(tag, Field("uri", "uri", TEXT), uri, {})
-    sheet.put(tag, Field("scale", "scale", VECTOR, (1.0, 1.0, 1.0)), mesh.scale, texts, "geometry/mesh/")
+        sheet.put(tag, _URI, uri, {})
+    sheet.put(tag, _SCALE, mesh.scale, texts, "geometry/mesh/")
 
 
 # ---- appearance --------------------------------------------------------------------------------------------------------------
@@ -103,8 +113,8 @@ def _add_material(visual: Tag, view: ShapeView, texts: Mapping[str, str], sheet:
     if rgba is not None:
         tag = visual.child("material")
         if not sheet.from_sdf:
-            tag.add("ambient").children.append(COLOUR.write(rgba))
-        sheet.put(tag, Field("diffuse", "rgba", COLOUR), rgba, texts, "material/")
+            sheet.add_text(tag, "ambient", COLOUR.write(rgba))
+        sheet.put(tag, _DIFFUSE, rgba, texts, "material/")
     images = sheet.textures.get(view.material, {}) if view.material is not None else {}
     numbers = [] if material is None else [(tag, getattr(material, name)) for tag, name in materials.NUMBERS.items()]
     if not images and not any(value is not None for _, value in numbers):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -15,9 +16,9 @@ from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import ROOT, WORLD, numbers_weight
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Camera, Coupling, DofKind, Joint, Layer, Sense, Sensor, Texture
-from hymeko_x.ir.values import IDENTITY, numbers_text, rotation_angle, rpy_of
+from hymeko_x.ir.values import IDENTITY, Pose, numbers_text, rotation_angle, rpy_of
 from hymeko_x.xml.printing import foreign_text, put_back
-from hymeko_x.xml.text import escaped
+from hymeko_x.xml.text import attributes_text, escaped
 from hymeko_x.xml.unread import COMMENT, FOLLOWING, PRECEDING
 
 if TYPE_CHECKING:
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from hymeko_x.backends.sdf.gears import Gear
     from hymeko_x.formats.sdf.values import Codec, Field
     from hymeko_x.ir.mechanism import Extra, Id, JointView, Mechanism, RobotArc
-    from hymeko_x.ir.values import Pose
     from hymeko_x.xml.printing import Tag
 
 _PLACEMENTS = ("@placement_frame", "model/@placement_frame", "world/model/@placement_frame")
@@ -181,16 +181,24 @@ class SdfSheet:
 
     def written(self, key: Id) -> Mapping[str, str]:
         """The texts of an element's values, by path, that its author wrote in a way of their own."""
-        return self.mechanism.notation(key, notations.WRITTEN) or {}
+        return (self.mechanism.notation(key, notations.WRITTEN) or {}) if self.from_sdf else {}
 
     def put(self, tag: Tag, field: Field, value: Any, texts: Mapping[str, str], prefix: str = "") -> None:
         """Write a value below a tag: as its author wrote it where that means the same, and not at all where it is the default."""
         text = self.text(field.codec, value, field.default, texts.get(f"{prefix}{field.path}") if texts else None)
         if text is None:
             return
-        for step in field.path.split("/"):
+        *steps, last = field.path.split("/")
+        for step in steps:
             tag = tag.child(step)
-        tag.children = [escaped(text)] if text else []
+        self.add_text(tag, last, escaped(text))
+
+    def add_text(self, tag: Tag, name: str, text: str, **attributes: str) -> None:
+        """Add a child with a text. It is ready text, which prints faster, except in files from SDF, whose extras may be in it."""
+        if self.from_sdf or not text:
+            tag.add(name, **attributes).children += [text] if text else []
+        else:
+            tag.children.append(f"<{name}{attributes_text(attributes) if attributes else ''}>{text}</{name}>")
 
     def text(self, codec: Codec, value: Any, default: Any, own: str | None) -> str | None:
         """The text of a value; None for the default, unless its author wrote it."""
@@ -209,19 +217,16 @@ class SdfSheet:
 
         ``pose`` is where the element is in its default frame, for those that are no frames themselves.
         """
-        own = self.mechanism.notation(key, notations.POSE)
+        own = self.mechanism.notation(key, notations.POSE) if self.from_sdf else None
         if own is not None and self._add_own_pose(tag, own, scope, key, default, pose):
             return
         frame = default if base is None or self.from_sdf else base
         value = pose if pose is not None else self.places.relative(key, frame)
-        child = None
-        if frame != default:
-            child = tag.add("pose", relative_to=self.places.name(frame, scope))
-        if is_near(value, IDENTITY):
-            if child is not None:
-                child.children.append("0 0 0 0 0 0")
-            return
-        (child or tag.add("pose")).children.append(numbers_text((*value.xyz, *rpy_of(value))))
+        is_identity = is_near(value, IDENTITY)
+        if frame != default or not is_identity:
+            marks = {"relative_to": self.places.name(frame, scope)} if frame != default else {}
+            text = "0 0 0 0 0 0" if is_identity else numbers_text((*value.xyz, *rpy_of(value)))
+            self.add_text(tag, "pose", text, **marks)
 
     def add_model_pose(self, tag: Tag, key: Id, outer: str, around: Id, scope: str) -> None:
         """Add the <pose> of a model, which is that of its placement frame where it names one."""
@@ -298,9 +303,8 @@ class SdfSheet:
 
 def is_near(a: Any, b: Any) -> bool:
     """Whether two values are the same up to rounding."""
-    if hasattr(a, "quat") and hasattr(b, "quat"):
-        distance = max(abs(x - y) for x, y in zip(a.xyz, b.xyz, strict=True))
-        return bool(distance <= _NEAR and rotation_angle(a.quat, b.quat) <= _NEAR)
+    if isinstance(a, Pose) and isinstance(b, Pose):
+        return math.dist(a.xyz, b.xyz) <= _NEAR and rotation_angle(a.quat, b.quat) <= _NEAR
     if isinstance(a, tuple) and isinstance(b, tuple):
         return len(a) == len(b) and all(is_near(x, y) for x, y in zip(a, b, strict=True))
     if isinstance(a, float) and isinstance(b, int | float):
