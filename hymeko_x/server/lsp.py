@@ -59,6 +59,8 @@ class _Server(LanguageServer):
 
     def show(self, uri: str) -> None:
         """Read a document, and send its diagnostics."""
+        if uri in self._waiting:
+            self._waiting.pop(uri).cancel()
         if uri not in self.workspace.text_documents:
             return
         document = analyse(uri, self.workspace.get_text_document(uri).source, self.known.get(uri))

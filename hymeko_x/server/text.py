@@ -70,12 +70,16 @@ def unquoted(name: str) -> str:
 def words(text: str) -> Iterator[Word]:
     """Every name in the text outside of comments and strings."""
     for match in _WORDS.finditer(text):
-        if match["path"] is None:
-            continue
-        path: tuple[str, ...] = ()
-        for step in _STEPS.finditer(match["path"]):
-            path = (*path, unquoted(step[0]))
-            yield Word(match.start() + step.start(), match.start() + step.end(), path)
+        if match["path"] is not None:
+            yield from _words_of(match)
+
+
+def _words_of(match: re.Match[str]) -> Iterator[Word]:
+    """The names of a path."""
+    path: tuple[str, ...] = ()
+    for step in _STEPS.finditer(match["path"]):
+        path = (*path, unquoted(step[0]))
+        yield Word(match.start() + step.start(), match.start() + step.end(), path)
 
 
 class Definition(NamedTuple):
@@ -158,22 +162,26 @@ def _last_step(text: str, path: tuple[int, int]) -> tuple[int, int]:
 
 def word_at(text: str, offset: int) -> Word | None:
     """The name at an offset, or right before it."""
-    return next((word for word in words(text) if word.start <= offset <= word.end), None)
+    for match in _WORDS.finditer(text):
+        if match.start() > offset:
+            return None
+        if match.end() >= offset and match["path"] is not None:
+            return next((word for word in _words_of(match) if word.start <= offset <= word.end), None)
+    return None
 
 
 def heads(text: str, offset: int) -> list[str]:
     """The heads of the blocks around an offset, from the outermost: the text of each since the item before it."""
     begin = 0
-    stack: list[tuple[str, int]] = []
-    for match in _WORDS.finditer(text, 0):
+    stack: list[str] = []
+    for match in _WORDS.finditer(text):
         if match.start() >= offset:
             break
         mark = match["mark"]
         if mark == "{":
-            head = text[begin : match.start()]
-            stack.append((re.split(r"[\n}{]", head.strip())[-1].strip(), begin))
+            stack.append(text[begin : match.start()])
         elif mark == "}" and stack:
             stack.pop()
         if mark in ("{", "}"):
             begin = match.end()
-    return [head for head, _ in stack]
+    return [re.split(r"[\n}{]", head.strip())[-1].strip() for head in stack]
