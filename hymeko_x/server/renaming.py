@@ -10,7 +10,7 @@ from xml.sax.saxutils import escape
 from lsprotocol import types
 from msgspec.structs import replace
 
-from hymeko_x import codes, pipeline
+from hymeko_x import pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.edits.text import text_with_edits
@@ -55,13 +55,12 @@ def _edits(
     literal = _written_out(text, *names)
     if _reads_as(replace(source, data=literal.encode()), format, after):
         return {_uri(source.name): edits_between(text, literal)}
-    report = Report()
-    changed = text_with_edits(source, format, before, after, report).changed
-    if any(one.code is codes.EDIT_REWRITTEN for one in report):
+    found = text_with_edits(source, format, before, after, Report())
+    if found.printed or found.is_whole:
         return f"'{names[0]}' stands in the text in more places than where it is written out, in a macro for example"
     return {
         _uri(path): edits_between(text if path == source.name else Path(path).read_text("utf-8"), data.decode())
-        for path, data in changed.items()
+        for path, data in found.changed.items()
     }
 
 
