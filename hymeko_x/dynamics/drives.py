@@ -8,7 +8,7 @@ from msgspec import Struct
 
 from hymeko_x.dynamics.numbers import add, times
 from hymeko_x.ir import parts
-from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind
 
@@ -50,11 +50,10 @@ def terms_of(mechanism: Mechanism, tree: Tree, arcs: Sequence[RobotArc]) -> Term
     """The links of one coordinate that arcs lead to, with the first number of their weights; None where an arc leads elsewhere."""
     found = []
     for arc in arcs:
-        edge = mechanism.graph.edges.get(arc.target)
-        number = dof_number(edge.data, arc.role) if edge is not None and isinstance(edge.data, parts.Joint) else None
-        if number is None or (arc.target, number) not in tree.places:
+        dof = dof_at(mechanism.graph.edges, arc)
+        if dof is None or (arc.target, dof[0]) not in tree.places:
             return None
-        found.append((tree.places[arc.target, number], (numbers_weight(arc) or (1.0,))[0]))
+        found.append((tree.places[arc.target, dof[0]], (numbers_weight(arc) or (1.0,))[0]))
     return tuple(found)
 
 

@@ -12,7 +12,7 @@ from hymeko_x.dynamics.linear import StateSpace
 from hymeko_x.dynamics.positions import moved
 from hymeko_x.dynamics.system import Variable
 from hymeko_x.ir import parts
-from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind
 
@@ -56,11 +56,9 @@ def named_positions(mechanism: Mechanism, words: str) -> dict[str, float]:
         if not any(arc.target.kind == "pose" and arc.target.name == words for arc in arcs):
             continue
         for arc in arcs:
-            edge = mechanism.graph.edges.get(arc.target)
-            joint = edge.data if edge is not None else None
-            number = dof_number(joint, arc.role) if isinstance(joint, parts.Joint) else None
-            if number is not None and isinstance(joint, parts.Joint) and len(numbers_weight(arc)) == 1:
-                found[joint.dofs[number].name or arc.target.name] = numbers_weight(arc)[0]
+            dof = dof_at(mechanism.graph.edges, arc)
+            if dof is not None and len(numbers_weight(arc)) == 1:
+                found[dof[1].name or arc.target.name] = numbers_weight(arc)[0]
     if found:
         return found
     try:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
+    from hymeko_x.ir.parts import Dof
     from hymeko_x.ir.values import Pose
 
     Dofs = Mapping[tuple[Id, int], tuple[Id, str]]
@@ -27,6 +28,15 @@ def dof_number(joint: Joint, role: str) -> int | None:
     if role.isascii() and role.isdigit() and int(role) < len(joint.dofs):
         return int(role)
     return 0 if not role and len(joint.dofs) == 1 else None
+
+
+def dof_at(edges: Mapping[Id, RobotEdge], arc: RobotArc) -> tuple[int, Dof] | None:
+    """The dof to which an arc leads, with its number in its joint; None where it leads to no single dof."""
+    edge = edges.get(arc.target)
+    if edge is None or not isinstance(edge.data, Joint):
+        return None
+    number = dof_number(edge.data, arc.role)
+    return None if number is None else (number, edge.data.dofs[number])
 
 
 def edges_to_moved_dofs(mechanism: Mechanism, moved: Dofs) -> dict[Id, RobotEdge]:
@@ -43,11 +53,10 @@ def edges_to_moved_dofs(mechanism: Mechanism, moved: Dofs) -> dict[Id, RobotEdge
 
 
 def _moved_arc(arc: RobotArc, mechanism: Mechanism, moved: Dofs) -> RobotArc:
-    edge = mechanism.graph.edges.get(arc.target)
-    number = dof_number(edge.data, arc.role) if edge is not None and isinstance(edge.data, Joint) else None
-    if number is None or (arc.target, number) not in moved:
+    found = dof_at(mechanism.graph.edges, arc)
+    if found is None or (arc.target, found[0]) not in moved:
         return arc
-    target, role = moved[arc.target, number]
+    target, role = moved[arc.target, found[0]]
     return replace(arc, target=target, role=role)
 
 

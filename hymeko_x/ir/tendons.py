@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import Id, RobotEdge, numbers_weight
-from hymeko_x.ir.parts import Cylinder, DofKind, Joint, Shape, Sphere
+from hymeko_x.ir.parts import Cylinder, DofKind, Shape, Sphere
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,11 +54,8 @@ def _wrong_fixed(arcs: Sequence[RobotArc], edges: Edges) -> str | None:
 
 def moves_along_one(arc: RobotArc, edges: Edges) -> bool:
     """Whether an arc leads to a hinge or a slide."""
-    edge = edges.get(arc.target)
-    if edge is None or not isinstance(edge.data, Joint):
-        return False
-    number = dof_number(edge.data, arc.role)
-    return number is not None and edge.data.dofs[number].kind in (DofKind.HINGE, DofKind.SLIDE)
+    found = dof_at(edges, arc)
+    return found is not None and found[1].kind in (DofKind.HINGE, DofKind.SLIDE)
 
 
 def _wrong_spatial(arcs: Sequence[RobotArc], edges: Edges) -> str | None:

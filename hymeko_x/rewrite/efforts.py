@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.diagnostics import listed
 from hymeko_x.ir.graph import Edge
-from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import end_of, numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Drive, Joint, Tendon
 
@@ -87,10 +87,9 @@ def _driven(mechanism: Mechanism, arcs: tuple[RobotArc, ...]) -> Iterator[tuple[
 
 
 def _dof(mechanism: Mechanism, arc: RobotArc, gear: float) -> Iterator[tuple[tuple[Id, int], float]]:
-    view = mechanism.joints.get(arc.target)
-    number = None if view is None else dof_number(view.joint, arc.role)
-    if number is not None:
-        yield (arc.target, number), gear
+    found = dof_at(mechanism.graph.edges, arc)
+    if found is not None and arc.target in mechanism.joints:
+        yield (arc.target, found[0]), gear
 
 
 # ---- one actuator --------------------------------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from hymeko_x.ir.geometry import Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere
 from hymeko_x.ir.graph import Edge, Hypergraph
-from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import has_numbers
 from hymeko_x.ir.parts import Body, Coupling, Dof, DofKind, Frame, Joint, Limits, Loop, Mesh, Shape, Stance, Tendon
 from hymeko_x.ir.values import Pose
@@ -149,6 +149,5 @@ def _leader(arc: RobotArc, follower: RobotArc, mechanism: Mechanism, s: float) -
 
 
 def _length_of(arc: RobotArc, mechanism: Mechanism, s: float) -> float:
-    view = mechanism.joints.get(arc.target)
-    number = None if view is None else dof_number(view.joint, arc.role)
-    return 1.0 if view is None or number is None else _length(view.joint.dofs[number], s)
+    found = dof_at(mechanism.graph.edges, arc)
+    return 1.0 if found is None else _length(found[1], s)

@@ -14,9 +14,10 @@ from pxr import Gf, Sdf, Tf, Vt
 
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import FAMILY
+from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.names import free_name
-from hymeko_x.ir.parts import DofKind, Joint
+from hymeko_x.ir.parts import DofKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -278,16 +279,11 @@ def quatf(quat: Quat) -> Any:
 
 def dof_of(sheet: UsdSheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
     """The prim of the dof that an arc means, its axis where that is a generic joint, and the dof itself (hinge or slide)."""
-    from hymeko_x.ir.kinematics import dof_number
-
-    edge = sheet.mechanism.graph.edges.get(arc.target)
-    if edge is None or not isinstance(edge.data, Joint):
+    found = dof_at(sheet.mechanism.graph.edges, arc)
+    if found is None or found[1].kind not in (DofKind.HINGE, DofKind.SLIDE):
         return None
-    number = dof_number(edge.data, arc.role)
-    place = sheet.dofs.get((arc.target, number)) if number is not None else None
-    if place is None or number is None or edge.data.dofs[number].kind not in (DofKind.HINGE, DofKind.SLIDE):
-        return None
-    return sheet.prims[place[0]], place[1], edge.data.dofs[number]
+    place = sheet.dofs.get((arc.target, found[0]))
+    return None if place is None else (sheet.prims[place[0]], place[1], found[1])
 
 
 def prim_of(sheet: UsdSheet, arc: RobotArc) -> Any | None:

@@ -10,7 +10,7 @@ from hymeko_x.formats.mjcf.codec import numbers_of
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.formats.mjcf.words import shifted, trimmed
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import ROOT, Id, numbers_weight
 from hymeko_x.ir.parts import Coupling, Joint, Tendon
 
@@ -73,6 +73,5 @@ def _tendons(mechanism: Mechanism) -> Mapping[str, _End]:
 
 def _length(mechanism: Mechanism, arc: RobotArc) -> float:
     """What a joint adds to the length of a fixed tendon at the reference configuration."""
-    view = mechanism.joints.get(arc.target)
-    number = None if view is None else dof_number(view.joint, arc.role)
-    return 0.0 if view is None or number is None else view.joint.dofs[number].ref * numbers_weight(arc)[0]
+    found = dof_at(mechanism.graph.edges, arc)
+    return 0.0 if found is None else found[1].ref * numbers_weight(arc)[0]
