@@ -96,6 +96,7 @@ ERRORS: Mapping[Code, str] = {
     codes.NOTHING_TO_DRAW: "there is no picture",
     codes.CANNOT_DRAW: "there is no picture",
     codes.BUG: "the result cannot be trusted",
+    codes.EDIT_DROPPED: "with the edits the original would not be read again; it stays as it is",
 }
 """Why it ends the command."""
 
@@ -152,6 +153,7 @@ NOTES: Mapping[Code, str] = {
     codes.NOT_UNIT: "a direction has no length, and the numbers are kept",
     codes.UNKNOWN_WORD: "other programs allow the word, and it is kept",
     codes.EDIT_REWRITTEN: "the edit is there, in an element that was printed anew",
+    codes.EDIT_DROPPED: "the original's format makes the name itself, and the robot is the same",
     codes.OPTIONS_FOUND: "they explain the edited file best",
     codes.REWRITTEN: "the output is the same robot in other words",
     codes.REPAIRED: "it was asked for, and each repair is in the list",

@@ -14,7 +14,7 @@ from msgspec.structs import replace
 from hymeko_x import codes, formats, pipeline
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
-from hymeko_x.diagnostics import Origin, Report, refuse
+from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.edits.conversion import Conversion, new_assets
 from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
 from hymeko_x.ir.names import rename
@@ -108,7 +108,10 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
             break
         new, new_beside = {**changed, **found.texts.changed}, {**beside, **found.beside, **found.texts.beside}
         source = replace(original, data=new.get(original.name, original.data), files=EditedFiles(original.files, {**new, **new_beside}))
-        later = _round(source, format, conversion, edited, Report())
+        try:
+            later = _round(source, format, conversion, edited, Report())
+        except Refusal as error:
+            raise _broken(original, error) from error
         if changed and later.distance >= found.distance:
             conversion.go_back()
             break
@@ -186,8 +189,19 @@ def _dropped(edits: tuple[Difference, ...], after: Mechanism, original: Source, 
     if not edits or format.is_exact:
         return frozenset()
     elements = {str(edit.element) for edit in edits}
-    losses = pipeline.convert(after, format, Options(lenient=True), original.files, Report()).losses or ()
+    try:
+        losses = pipeline.convert(after, format, Options(lenient=True), original.files, Report()).losses or ()
+    except Refusal as error:
+        raise _broken(original, error) from error
     return frozenset((loss.element, loss.field) for loss in losses if loss.fate == "dropped" and loss.element in elements)
+
+
+def _broken(original: Source, error: Refusal) -> Refusal:
+    """The refusal of edits with which the original cannot be read, or converted, as the one says that this led to."""
+    if error.diagnostic.code == codes.LIBRARY_MISSING:
+        return error
+    reason = error.__cause__ if isinstance(error.__cause__, Refusal) else error
+    return refuse(codes.EDIT_DROPPED, f"with the edits the original cannot be used: {reason}", Origin(original.name))
 
 
 def _is_unused(edit: Difference, after: Mechanism) -> bool:

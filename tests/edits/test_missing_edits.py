@@ -108,3 +108,17 @@ def test_a_mesh_that_no_shape_has_any_more_is_no_edit(tmp_path: Path) -> None:
     assert "tip" not in (tmp_path / "r.urdf").read_text()
     again = hx.update(tmp_path / "r.urdf", tmp_path / "r.xml")
     assert ([str(edit) for edit in again.edits], [row.message for row in again.report]) == ([], [])
+
+
+@pytest.mark.unread("HX101")
+def test_a_body_that_something_of_mjcf_s_own_refers_to_is_not_removed(tmp_path: Path) -> None:
+    eye = '<camera name="eye" mode="targetbody" target="toe" pos="1 0 0"/></worldbody>'
+    (tmp_path / "r.xml").write_text(LEG.replace("</worldbody>", eye))
+    hx.convert(tmp_path / "r.xml", tmp_path / "r.urdf")
+    text = re.sub('<link name="toe">.*?</link>', "", (tmp_path / "r.urdf").read_text(), flags=re.DOTALL)
+    (tmp_path / "r.urdf").write_text(re.sub('<joint name="toe".*?</joint>', "", text, flags=re.DOTALL))
+    with pytest.raises(
+        hx.Refusal, match="with the edits the original cannot be used: .*<camera> refers to the body 'toe', which is not there"
+    ):
+        hx.update(tmp_path / "r.xml", tmp_path / "r.urdf")
+    assert "toe" in (tmp_path / "r.xml").read_text()
