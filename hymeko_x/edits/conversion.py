@@ -17,6 +17,7 @@ from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Body, Mesh, Texture
+from hymeko_x.residue.align import align
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.landmarks import NAMED
 from hymeko_x.residue.merge import restore
@@ -127,11 +128,14 @@ class Conversion:
     def left(self) -> Left:
         """The edits that did not arrive: what the edited file has otherwise than ORIGINAL as it was converted last."""
         assert self._used is not None
-        names, rest = self._against(self._used.image)
+        names = self._renames(self._used.image)
+        edited = self._under(names, self.edited, self._used.image)
+        image = align(self._used.image, edited)[1]
+        rest = relevant(diff(image, edited, TOLERANCE), image, edited, TOLERANCE)
         words: dict[bool, list[str]] = {True: [], False: []}
-        for new, old in names.items():
+        for new, old in names.given.items():
             words[self._is_made(new, old)].append(f"{old.kind} '{old.name}' is called '{new.name}'")
-        return Left({*names, *names.values()}, words[False], words[True], [str(edit) for edit in rest if _is_telling(edit)])
+        return Left({*names.given, *names.given.values()}, words[False], words[True], [str(edit) for edit in rest if _is_telling(edit)])
 
     def _is_made(self, new: Id, old: Id) -> bool:
         """Whether a name is one that a format made: of an element without one, or of one beside a link of its name."""
@@ -140,11 +144,9 @@ class Conversion:
         is_body_s = joint is not None and len(joint.joint.dofs) != 1
         return is_body_s or self.mechanism.notation(home, UNNAMED) is not None or _is_beside(new, old)
 
-    def _against(self, image: Mechanism) -> tuple[dict[Id, Id], tuple[Difference, ...]]:
-        """The old ids of elements that the edited file calls otherwise than an image, by their new ones, and what else differs."""
-        names = self._renames(image)
-        edited = self._under(names, self.edited, image)
-        return names.given, tuple(relevant(diff(image, edited, TOLERANCE), image, edited, TOLERANCE))
+    def _distance(self, image: Mechanism) -> int:
+        """In how much the edited file differs from an image, apart from names."""
+        return len(diff(image, self._under(self._renames(image), self.edited, image), TOLERANCE))
 
     def _under(self, names: Names, edited: Mechanism, image: Mechanism) -> Mechanism:
         """The edited robot under the names of the image, and the shapes of each body under the ids that they have there."""
@@ -176,7 +178,7 @@ class Conversion:
 
     def _guess(self, options: Options, place: pipeline.Place) -> Guess:
         image = self._converted(self.mechanism, options, place, self.source.files)
-        return Guess(options, place, image, len(self._against(image)[1]))
+        return Guess(options, place, image, self._distance(image))
 
     def _converted(self, mechanism: Mechanism, options: Options, place: pipeline.Place, files: Files) -> Mechanism:
         """A mechanism as the format has it. Raises: as :func:`hymeko_x.pipeline.write`."""

@@ -130,14 +130,13 @@ def _round(original: Source, format: Format, conversion: Conversion, edited: Sou
     """The edits that a text does not have yet, carried over to it."""
     before = pipeline.read(original, format, Report(), lenient=conversion.is_known)
     after, beside = _with_new_assets(before, conversion.edited_mechanism(before, original), edited)
-    after = _with_imported_names(before, after, imported(original, format, before))
+    after = _without_unused(before, _with_imported_names(before, after, imported(original, format, before)))
     every = diff(before, after, TOLERANCE)
     gone = _dropped(every, after, original, format)
     after = _without_inertials(before, after, {element for element, field in gone if field.partition(".")[0] == "inertial"})
     dropped = [edit for edit in every if (str(edit.element), edit.field) in gone and not _is_inherited(edit) and not _is_weight(edit)]
     texts = text_with_edits(original, format, before, after, report) if len(dropped) < len(every) else Texts({}, {})
-    lost = tuple([edit for edit in dropped if not _is_unused(edit, after)])
-    return _Round(before, texts, beside, lost, conversion.left().number)
+    return _Round(before, texts, beside, tuple(dropped), conversion.left().number)
 
 
 def _report_left(found: _Round, conversion: Conversion, original: Source, format: Format, report: Report) -> None:
@@ -204,9 +203,13 @@ def _broken(original: Source, error: Refusal) -> Refusal:
     return refuse(codes.EDIT_DROPPED, f"with the edits the original cannot be used: {reason}", Origin(original.name))
 
 
-def _is_unused(edit: Difference, after: Mechanism) -> bool:
-    """Whether an edit only leaves a mesh or a material that no shape has any more, as where a body was removed."""
-    return edit.element.kind in _ASSET_KINDS and edit.before is None and not after.graph.incidence.get(edit.element)
+def _without_unused(before: Mechanism, after: Mechanism) -> Mechanism:
+    """The edited robot without meshes and materials that only it lists and that no shape has, as where a body was removed."""
+    graph = after.graph
+    new = (key for key in graph.vertices if key.kind in _ASSET_KINDS and key not in before.graph.vertices)
+    unused = {key for key in new if not graph.incidence.get(key)}
+    extras = {key: found for key, found in after.extras.items() if key not in unused}
+    return replace(after.with_graph(graph.replace(without=unused)), extras=extras) if unused else after
 
 
 def _is_weight(edit: Difference) -> bool:

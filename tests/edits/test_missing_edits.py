@@ -99,7 +99,8 @@ def test_a_mesh_that_no_shape_has_any_more_is_no_edit(tmp_path: Path) -> None:
     """The converted file still lists the mesh of a body that was removed."""
     facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet"
     (tmp_path / "tip.stl").write_text(f"solid tip\n{facet}\nendsolid\n")
-    mesh = '<visual><geometry><mesh filename="tip.stl"/></geometry></visual>'
+    white = '<material name="white"><color rgba="1 1 1 1"/></material>'
+    mesh = f'<visual><geometry><mesh filename="tip.stl"/></geometry>{white}</visual>'
     tip = f'<link name="tip">{mesh}</link><joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint>'
     (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="base"/>{tip}</robot>')
     hx.convert(tmp_path / "r.urdf", tmp_path / "r.xml")

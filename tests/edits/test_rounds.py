@@ -128,3 +128,19 @@ def test_a_link_that_is_moved_in_its_joint_is_moved_in_mjcf_which_has_no_such_pl
     moved = ('<pose relative_to="hat_joint">0 0 0 0 0 0</pose>', '<pose relative_to="hat_joint">0 0.2 0 0 0 0</pose>')
     after, notes = brought_home(tmp_path, "r.sdf", moved, text=TORSO)
     assert (after, notes) == (TORSO.replace('pos="0 0 .5"', 'pos="0 0.2 .5"'), [])
+
+
+@pytest.mark.unread("HX101")
+def test_a_link_that_is_moved_in_its_joint_is_no_edit_that_is_left_where_it_becomes_two_joints(tmp_path: Path) -> None:
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+    links = f'<link name="base"/><link name="arm">{inertial}</link>'
+    joint = '<joint name="j" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="1 0 0"/></joint>'
+    (tmp_path / "r.urdf").write_text(f'<robot name="r">{links}{joint}</robot>')
+    hx.convert(tmp_path / "r.urdf", tmp_path / "r.sdf")
+    text = (tmp_path / "r.sdf").read_text()
+    moved = text.replace('relative_to="j">0 0 0', 'relative_to="j">0 0.5 0')
+    assert moved != text
+    (tmp_path / "r.sdf").write_text(moved)
+    assert hx.update(tmp_path / "r.urdf", tmp_path / "r.sdf").changed
+    again = hx.update(tmp_path / "r.urdf", tmp_path / "r.sdf")
+    assert (again.edits, [str(row) for row in again.report if row.code.id == "HX118"]) == ((), [])
