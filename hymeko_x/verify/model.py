@@ -67,6 +67,7 @@ class Feature(Enum):
     VELOCITY_LIMITS = "velocity limits"
     EFFORT_LIMITS = "effort limits"
     DAMPING = "damping"
+    NEGATIVE_DAMPING = "negative damping"
     FRICTION = "friction"
     ARMATURE = "armature"
     SPRINGS = "springs"

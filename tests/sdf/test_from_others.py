@@ -27,6 +27,9 @@ CLOSURES = f"""<mujoco model="m"><worldbody><site name="here" pos="0 0 1"/><body
 <weld name="stuck" body1="tip" body2="late"/><joint name="law" joint1="led" joint2="turn" polycoef="0 1 2 0 0"/></equality></mujoco>"""
 CROSSED = """<robot name="m"><link name="a"/><link name="b"/><joint name="j" type="prismatic"><parent link="a"/><child link="b"/>
 <axis xyz="1 0 0"/><limit lower="2" upper="1" effort="1" velocity="1"/></joint></robot>"""
+PUSHED = (
+    f"""<mujoco model="m"><worldbody><body name="a"><joint name="j" damping="-0.01" stiffness="-2"/>{BALL}</body></worldbody></mujoco>"""
+)
 TWICE = """<robot name="m"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <gazebo reference="a"><sensor name="eye" type="camera"><camera/></sensor><sensor name="eye" type="imu"/></gazebo></robot>"""
 ANCHOR = """<robot name="m"><link name="a"/><link name="a_anchor"/><joint name="j" type="fixed"><parent link="a"/><child link="a_anchor"/></joint></robot>"""
@@ -44,6 +47,7 @@ CASES = {
     "a slide and a ball above one body": ("m.xml", SLIDE_AND_BALL, SAME),
     "closures that hold free bodies, or join what is joined": ("m.xml", CLOSURES, LIMITED),
     "limits that are crossed": ("m.urdf", CROSSED, SAME),
+    "negative damping and stiffness": ("m.xml", PUSHED, LIMITED),
     "two sensors of one name": ("m.urdf", TWICE, SAME),
     "a link whose name ends as ours do": ("m.urdf", ANCHOR, SAME),
     "a free joint below a body": ("m.hymeko", INNER_FREE, SAME),

@@ -364,6 +364,15 @@ def test_a_hypergraph_without_bodies_is_no_robot(tmp_path: Path) -> None:
     assert hx.verify(text, text).reason == "; ".join(["the HyMeKo text describes a hypergraph without bodies, which is no robot"] * 2)
 
 
+def test_a_scene_without_bodies_is_compared_by_its_shapes(written: Write, tmp_path: Path) -> None:
+    scene = written("mjcf", '<mujoco><worldbody><geom type="box" size="2 2 1"/><camera name="eye"/></worldbody></mujoco>')
+    text = tmp_path / "scene.hymeko"
+    hx.convert(scene, text)
+    assert hx.verify(scene, text).verdict == "same"
+    text.write_text(text.read_text().replace("[4 4 2]", "[4 5 2]"))
+    assert hx.verify(scene, text).verdict == "different"
+
+
 def test_a_root_link_called_world_is_a_body_where_it_weighs_something(tmp_path: Path) -> None:
     text = tmp_path / "heavy.hymeko"
     bodies = "world : link {{ {} }} arm {{ mass 1 inertia [1 1 1] }} @turn : continuous {{ + `world` - arm }}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
@@ -28,6 +29,8 @@ from hymeko_x.rewrite.shapes import drop_engine_shapes, drop_unused_assets, make
 from hymeko_x.rewrite.subsets import part_meshes_by_looks
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     from hymeko_x.ir.mechanism import JointView, Mechanism, RobotEdge
     from hymeko_x.rewrite.context import Context, Rule
 
@@ -89,16 +92,19 @@ def _is_joint(view: JointView) -> bool:
     return words.default_type(view.joint) not in (None, "revolute2")
 
 
-def remove_crossed_limits(mechanism: Mechanism, context: Context) -> Mechanism:
-    """A dof whose lower limit is above its upper one has no position limits: libsdformat refuses such limits."""
+def remove_refused_numbers(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A dof without the numbers that libsdformat or Drake refuse: limits that are crossed, negative damping, negative stiffness."""
     edges: dict[Id, RobotEdge] = {}
     for view in mechanism.joints.values():
-        dofs = tuple(_uncrossed(dof) for dof in view.joint.dofs)
-        if dofs == view.joint.dofs:
-            continue
-        edges[view.id] = replace(mechanism.graph.edges[view.id], data=replace(view.joint, dofs=dofs))
-        message = f"{view.id}: the lower limit is above the upper one, which SDF refuses; it is written without position limits"
-        context.report.warn(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
+        for what, accepted in _REFUSED.items():
+            joint = edges[view.id].data if view.id in edges else view.joint
+            assert isinstance(joint, Joint)
+            dofs = tuple([accepted(dof) for dof in joint.dofs])
+            if dofs == joint.dofs:
+                continue
+            edges[view.id] = replace(mechanism.graph.edges[view.id], data=replace(joint, dofs=dofs))
+            message = f"{view.id}: {what}, which programs that read SDF refuse; the joint is written without"
+            context.report.warn(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
     return mechanism.replace(edges=edges)
 
 
@@ -106,6 +112,16 @@ def _uncrossed(dof: Dof) -> Dof:
     lower, upper = dof.limits.lower, dof.limits.upper
     crossed = lower is not None and upper is not None and lower > upper
     return replace(dof, limits=replace(dof.limits, lower=None, upper=None)) if crossed else dof
+
+
+_REFUSED: Mapping[str, Callable[[Dof], Dof]] = MappingProxyType(
+    {
+        "the lower position limit is above the upper one": _uncrossed,
+        "the damping is negative": lambda dof: replace(dof, damping=0.0) if dof.damping < 0.0 else dof,
+        "the stiffness is negative": lambda dof: replace(dof, stiffness=0.0) if dof.stiffness < 0.0 else dof,
+    }
+)
+"""The numbers that are refused, and the dof without them."""
 
 
 # ---- the world ---------------------------------------------------------------------------------------------------------------
@@ -143,7 +159,7 @@ RULES: tuple[Rule, ...] = (
     unless_from_sdf(make_tensors_physical),
     unless_from_sdf(lower_inner_free_joints),
     unless_from_sdf(limit_efforts_by_actuators),
-    unless_from_sdf(remove_crossed_limits),
+    unless_from_sdf(remove_refused_numbers),
     move_anchors_into_frames,
     chain_joints,
     unless_from_sdf(close_loops_by_joints),

@@ -28,7 +28,6 @@ TINY = 1e-12
 """In SI units: mechanics below it are zero."""
 
 _MECHANICS: dict[Feature, tuple[str, str, Callable[[Dof], float]]] = {
-    Feature.DAMPING: ("damping", "N m s/rad", lambda dof: dof.damping),
     Feature.FRICTION: ("friction", "N m", lambda dof: dof.friction),
     Feature.ARMATURE: ("armature", "kg m^2", lambda dof: dof.armature),
 }
@@ -39,6 +38,7 @@ def check_dofs(pair: Pair) -> Iterator[Check]:
     yield from _check_limits(pair)
     yield from _check_bounds(pair, Feature.VELOCITY_LIMITS, "velocity limits", "rad/s or m/s", _velocity)
     yield from _check_bounds(pair, Feature.EFFORT_LIMITS, "effort limits", "N m or N", _driven_effort(pair))
+    yield from _check_mechanics(pair, Feature.DAMPING, "damping", "N m s/rad", _damping(pair))
     for feature, (name, unit, value) in _MECHANICS.items():
         yield from _check_mechanics(pair, feature, name, unit, value)
     yield from _check_springs(pair)
@@ -137,6 +137,15 @@ def _check_mechanics(pair: Pair, feature: Feature, name: str, unit: str, value: 
             if ours or theirs:
                 found.add(abs(theirs - ours), pair.relative(TINY, ours), pair.a.dof_label(d), ours, theirs)
     yield from found.checks()
+
+
+def _damping(pair: Pair) -> Callable[[Dof], float]:
+    """The damping of a dof; where a format has only positive damping, 0 in place of a negative one, which is a gap."""
+    if pair.both_represent(Feature.NEGATIVE_DAMPING):
+        return lambda dof: dof.damping
+    if pair.both_represent(Feature.DAMPING):
+        _add_unrepresented(pair, Feature.NEGATIVE_DAMPING, lambda dof: dof.damping < 0.0)
+    return lambda dof: max(dof.damping, 0.0)
 
 
 def _check_springs(pair: Pair) -> Iterator[Check]:

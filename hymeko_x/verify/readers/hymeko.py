@@ -55,7 +55,7 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
         mechanism = formats.loaded(str(format.frontend)).read(given, Report()).mechanism
     except Refusal as refusal:
         raise refuse(codes.ENGINE_REFUSED, f"the {kind} cannot be read: {refusal.diagnostic}", Origin(str(path))) from refusal
-    if next(mechanism.vertices(parts.Body), None) is None:
+    if WORLD_ID not in mechanism.graph.vertices and next(mechanism.vertices(parts.Body), None) is None:
         raise refuse(codes.ENGINE_REFUSED, f"the {kind} describes a hypergraph without bodies, which is no robot", Origin(str(path)))
     native = formats.native_format(mechanism)
     if native is not None and native.completes is not None and native.backend is not None:
