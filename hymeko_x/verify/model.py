@@ -22,6 +22,7 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from hymeko_x.formats import FORMATS, Format
+from hymeko_x.verify.features import Feature
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -58,31 +59,6 @@ class Kind(Enum):
 
 
 _WIDTHS = {Kind.HINGE: 1, Kind.SLIDE: 1, Kind.SCREW: 1, Kind.BALL: 4, Kind.FREE: 7}
-
-
-class Feature(Enum):
-    """What only some formats represent. It is checked only where both formats and readers do; else the verdict has a note."""
-
-    POSITION_LIMITS = "position limits"
-    VELOCITY_LIMITS = "velocity limits"
-    EFFORT_LIMITS = "effort limits"
-    DAMPING = "damping"
-    NEGATIVE_DAMPING = "negative damping"
-    FRICTION = "friction"
-    ARMATURE = "armature"
-    SPRINGS = "springs"
-    REFS = "coordinate references"
-    VISUALS = "visual shapes"
-    COLLISIONS = "collision shapes"
-    FIXED_JOINT_NAMES = "names of fixed joints"
-    ACTUATORS = "actuators"
-    SENSORS = "sensors"
-    TENDONS = "tendons"
-    TIED_TENDONS = "couplings of tendons"
-    LOOPS = "loops"
-    HELD_BASES = "free bases that a closure holds"
-    OPEN_LOOPS = "closures that are open in the zero pose"
-    CURVES = "couplings that are no straight line of one leader"
 
 
 class Dof(Struct, frozen=True, eq=False):

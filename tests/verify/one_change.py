@@ -12,7 +12,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotEdge, ShapeView, coupling_edge, joint_edge, shape_edge
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.values import Pose, X, Y, Z, add, compose, quat_about
-from hymeko_x.verify.model import Feature
+from hymeko_x.verify.features import Feature
 
 POSITION, ROTATION = "forward kinematics, position", "forward kinematics, rotation"
 

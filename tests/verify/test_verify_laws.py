@@ -19,8 +19,9 @@ from hymeko_x.source import NoFiles
 from hymeko_x.testing import arms
 from hymeko_x.verify import model_of
 from hymeko_x.verify.checks import compare
+from hymeko_x.verify.features import Feature
 from hymeko_x.verify.matching.bodies import identifier
-from hymeko_x.verify.model import Feature, KinematicModel
+from hymeko_x.verify.model import KinematicModel
 from hymeko_x.verify.verdict import Verdict
 from tests.verify.one_change import PLANTERS, Change
 from tests.verify.one_tendon import TENDON_PLANTERS, cabled

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hymeko_x.verify.checks.pair import Differences, Pair, counted
-from hymeko_x.verify.model import Feature, KinematicModel, Record
+from hymeko_x.verify.features import Feature
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from hymeko_x.verify.model import KinematicModel, Record
     from hymeko_x.verify.verdict import Check
 
 _TINY = 1e-12

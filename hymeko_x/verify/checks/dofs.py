@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hymeko_x.verify.checks.pair import RELATIVE, Differences, Pair, counted, same_numbers
-from hymeko_x.verify.model import INF, Dof, Feature, Kind
+from hymeko_x.verify.features import Feature
+from hymeko_x.verify.model import INF, Dof, Kind
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

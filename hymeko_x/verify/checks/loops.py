@@ -13,7 +13,8 @@ from msgspec.structs import replace
 
 from hymeko_x.verify.checks.kinematics import Peaks, allowance, batches
 from hymeko_x.verify.checks.pair import Differences, Pair, counted
-from hymeko_x.verify.model import Array, Feature, KinematicModel, Loop
+from hymeko_x.verify.features import Feature
+from hymeko_x.verify.model import Array, KinematicModel, Loop
 from hymeko_x.verify.spatial import angle_between, frame_with_z, inverse
 
 if TYPE_CHECKING:

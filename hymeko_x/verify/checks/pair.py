@@ -17,9 +17,10 @@ from hymeko_x.verify.verdict import Check, Finding, Gap
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from hymeko_x.verify.features import Feature
     from hymeko_x.verify.kinematics import Kinematics
     from hymeko_x.verify.matching import BallMatch, Match
-    from hymeko_x.verify.model import Array, Feature, KinematicModel
+    from hymeko_x.verify.model import Array, KinematicModel
 
 RELATIVE = 1e-9
 """Of a value: text keeps 15 digits or more, engines compute in doubles, and the error grows by conversion of units and frames."""

@@ -14,8 +14,9 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x.verify.checks.pair import Differences, Pair, counted
+from hymeko_x.verify.features import Feature
 from hymeko_x.verify.meshes import ALLOWED, mesh_distance
-from hymeko_x.verify.model import WORLD, Array, Feature, KinematicModel, MeshFile, Role, Shape
+from hymeko_x.verify.model import WORLD, Array, KinematicModel, MeshFile, Role, Shape
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hymeko_x.verify.checks.pair import Differences, Pair, counted, same_numbers
+from hymeko_x.verify.features import Feature
 from hymeko_x.verify.matching.bodies import speller
-from hymeko_x.verify.model import JOINT, PULLEY, SIDE, Feature, KinematicModel, Spring, Step, Tendon
+from hymeko_x.verify.model import JOINT, PULLEY, SIDE, KinematicModel, Spring, Step, Tendon
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

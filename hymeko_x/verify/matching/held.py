@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from msgspec.structs import replace
 
-from hymeko_x.verify.model import JOINT, WORLD, Dof, Feature, Kind, KinematicModel, between_frames
+from hymeko_x.verify.features import Feature
+from hymeko_x.verify.model import JOINT, WORLD, Dof, Kind, KinematicModel, between_frames
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

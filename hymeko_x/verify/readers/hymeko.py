@@ -24,7 +24,8 @@ from hymeko_x.rewrite.differentials import combinations
 from hymeko_x.rewrite.transmissions import commanded
 from hymeko_x.source import Source
 from hymeko_x.verify import model as m
-from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Kind, KinematicModel, Step, Tendon, point_of, world_body
+from hymeko_x.verify.features import Feature
+from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Kind, KinematicModel, Step, Tendon, point_of, world_body
 from hymeko_x.verify.spatial import frame_with_z, pose
 
 if TYPE_CHECKING:

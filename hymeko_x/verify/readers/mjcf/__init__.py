@@ -15,8 +15,9 @@ import numpy as np
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.verify.features import Feature
 from hymeko_x.verify.kinematics import disagreement
-from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Role, Shape, Surface, world_body
+from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, Role, Shape, Surface, world_body
 from hymeko_x.verify.readers import native_output
 from hymeko_x.verify.readers.mjcf.constraints import read_actuators, read_couplings, read_loops, read_sensors, read_tied_tendons
 from hymeko_x.verify.readers.mjcf.forces import driven_joints

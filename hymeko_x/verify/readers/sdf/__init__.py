@@ -24,12 +24,12 @@ from pydrake.systems.framework import DiagramBuilder
 from hymeko_x import codes
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Origin, Refusal, refuse
+from hymeko_x.verify.features import Feature
 from hymeko_x.verify.model import (
     WORLD,
     Array,
     Body,
     Dof,
-    Feature,
     Joint,
     Kind,
     KinematicModel,

@@ -16,20 +16,8 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.verify.model import (
-    INF,
-    WORLD,
-    Array,
-    Body,
-    Coupling,
-    Dof,
-    Feature,
-    Joint,
-    Kind,
-    KinematicModel,
-    parents_first,
-    world_body,
-)
+from hymeko_x.verify.features import Feature
+from hymeko_x.verify.model import INF, WORLD, Array, Body, Coupling, Dof, Joint, Kind, KinematicModel, parents_first, world_body
 from hymeko_x.verify.readers import native_output
 from hymeko_x.verify.readers.urdf.yourdfpy import Mimic, Second, disagreement, load
 from hymeko_x.verify.spatial import inverse, shifted_tensor

@@ -16,7 +16,8 @@ from pxr import Gf, Sdf, Tf, Usd, UsdPhysics
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.verify.model import WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, world_body
+from hymeko_x.verify.features import Feature
+from hymeko_x.verify.model import WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, world_body
 from hymeko_x.verify.readers import native_output
 from hymeko_x.verify.readers.usd.joints import JointEdge, read_couplings, read_joint, read_loop
 from hymeko_x.verify.readers.usd.scene import Scene, value_of
