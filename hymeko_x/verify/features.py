@@ -19,6 +19,7 @@ class Feature(Enum):
     REFS = "coordinate references"
     VISUALS = "visual shapes"
     COLLISIONS = "collision shapes"
+    FLAT_COLLISIONS = "collision meshes without volume"
     FIXED_JOINT_NAMES = "names of fixed joints"
     ACTUATORS = "actuators"
     SENSORS = "sensors"

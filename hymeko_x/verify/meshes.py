@@ -33,6 +33,9 @@ _THIN = 1e-3
 
 _MOST_POINTS = 4000  # of each side are searched among all points of the other: a tenth of a second
 
+_THICKNESS = 2e-4
+"""Of the mesh's extent: so thick is a solid at most that stands for a flat mesh."""
+
 _EMPTY = "holds no triangles"
 _REFERRING = (".gltf",)
 _PLAIN = {".obj": read_obj, ".stl": read_stl}
@@ -202,6 +205,23 @@ def mesh_distance(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes)
     ]
     difference, where = max(candidates)
     return difference, f"{where} of the meshes", ""
+
+
+def is_thickened(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes) -> bool:
+    """Whether the meshes of one body are flat, and those of the other are as near to them as the faces of a thin solid."""
+    ours, theirs = meshes.together(left), meshes.together(right)
+    if isinstance(ours, str) or isinstance(theirs, str):
+        return False
+    a, b = used(ours.vertices, ours.faces), used(theirs.vertices, theirs.faces)
+    extent = float(np.ptp(a, axis=0).max())
+    return min(_height(a), _height(b)) <= ALLOWED * extent and _points_distance(a, b) <= _THICKNESS * extent
+
+
+def _height(points: Array) -> float:
+    """The length of points in m along the direction in which they are spread least."""
+    centred = points - points.mean(axis=0)
+    _, axes = np.linalg.eigh(centred.T @ centred)
+    return float(np.ptp(centred @ axes[:, 0]))
 
 
 def _in_order(ours: Surface, theirs: Surface) -> float:

@@ -67,3 +67,14 @@ def test_a_robot_without_its_shapes_is_not_called_the_same(tmp_path: Path) -> No
     assert verdict.verdict != "same"
     trimesh.creation.box((1, 1, 1)).export(tmp_path / "gone.stl")
     assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.xml").verdict == "different"
+
+
+def test_a_thin_solid_stands_for_a_flat_mesh_that_collides_where_it_is_as_near(tmp_path: Path) -> None:
+    trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]]).export(tmp_path / "flat.stl")
+    (tmp_path / "r.urdf").write_text(URDF.format("flat.stl"))
+    hx.convert(tmp_path / "r.urdf", tmp_path / "r.xml")
+    found = hx.verify(tmp_path / "r.urdf", tmp_path / "r.xml")
+    assert (found.verdict, [gap.quantity for gap in found.gaps]) == ("same as far as mjcf can say", ["collision meshes without volume"])
+    text = (tmp_path / "r.xml").read_text()
+    (tmp_path / "r.xml").write_text(text.replace('<mesh name="flat"', '<mesh name="flat" scale="1.001 1 1"'))
+    assert "collision meshes" in str(hx.verify(tmp_path / "r.urdf", tmp_path / "r.xml").failed)

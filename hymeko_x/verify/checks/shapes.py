@@ -15,7 +15,7 @@ from msgspec.structs import replace
 
 from hymeko_x.verify.checks.pair import Differences, Pair, counted
 from hymeko_x.verify.features import Feature
-from hymeko_x.verify.meshes import ALLOWED, mesh_distance
+from hymeko_x.verify.meshes import ALLOWED, is_thickened, mesh_distance
 from hymeko_x.verify.model import WORLD, Array, KinematicModel, MeshFile, Role, Shape
 
 if TYPE_CHECKING:
@@ -46,6 +46,8 @@ class _Result(Struct, frozen=True):
     at: str = ""
     mesh_at: str = ""
     missing: str = ""
+    flat: bool = False
+    """Whether flat meshes on one side are thin solids on the other, whose format has no flat ones that collide."""
     lost: tuple[str, ...] = ()
     """Meshes of the first robot that its reader cannot load, and that the second one does not have."""
 
@@ -89,6 +91,8 @@ def _summed_up(pair: Pair, word: str, results: Sequence[tuple[int, _Result]]) ->
         yield from meshes.checks()
     lost = [f"{label} of {pair.a.body_label(i)}" for i, result in results for label in result.lost]
     pair.add_gap(pair.b, None, lost, f"{word} meshes that cannot be loaded")
+    flat = [pair.a.body_label(i) for i, result in results if result.flat]
+    pair.add_gap(pair.b if Feature.FLAT_COLLISIONS in pair.a.features else pair.a, Feature.FLAT_COLLISIONS, flat)
     missing = [result.missing for _, result in results if result.missing]
     if missing:
         pair.notes.append(f"{word} meshes of {len(missing)} bodies: {missing[0]}")
@@ -199,12 +203,18 @@ def _fit(pair: Pair, left: Sequence[Shape], right: Sequence[Shape]) -> _Result:
     mesh_left, mesh_right = [s for s in left if s.kind == "mesh"], [s for s in right if s.kind == "mesh"]
     if mesh_left and mesh_right:
         difference, where, missing = _distance_once(pair, mesh_left, mesh_right)
+        if difference > ALLOWED and _may_be_thickened(pair, left) and is_thickened(mesh_left, mesh_right, pair.meshes):
+            return _Result(tuple(unmatched), distance, 0.0, at, flat=True)
         return _Result(tuple(unmatched), distance, difference, at, where, missing)
     unreadable = pair.meshes.why_none(mesh_left) if mesh_left else ""
     if not unreadable:
         unmatched += [f"{_label(shape)} has no counterpart" for shape in mesh_left] + [f"{_label(shape)} is new" for shape in mesh_right]
     lost = tuple(_label(shape) for shape in mesh_left) if unreadable else ()
     return _Result(tuple(unmatched), distance, 0.0, at, "", unreadable, lost)
+
+
+def _may_be_thickened(pair: Pair, shapes: Sequence[Shape]) -> bool:
+    return not pair.both_represent(Feature.FLAT_COLLISIONS) and any(shape.role is not Role.VISUAL for shape in shapes)
 
 
 def _label(shape: Shape) -> str:

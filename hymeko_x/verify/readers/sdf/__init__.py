@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from hymeko_x.verify.readers.lookup import Lookup
 
 FEATURES = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.POSITION_LIMITS})
-_SHAPES = frozenset({Feature.VISUALS, Feature.COLLISIONS})
+_SHAPES = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FLAT_COLLISIONS})
 _LIMITS = (Feature.POSITION_LIMITS, Feature.VELOCITY_LIMITS)
 UNREAD = _SHAPES | {Feature.FRICTION, Feature.EFFORT_LIMITS, Feature.SPRINGS, Feature.REFS, Feature.SENSORS}
 """What SDF represents and this reader leaves out."""
