@@ -25,6 +25,9 @@ CLOSURES = f"""<mujoco model="m"><worldbody><site name="here" pos="0 0 1"/><body
 <body name="late" pos="5 0 0"><freejoint/>{BALL}</body><body name="led" pos="7 0 0"><joint name="led"/>{BALL}</body></worldbody>
 <equality><connect name="hook" site1="here" site2="there"/><connect name="again" body1="base" body2="tip" anchor="1 0 0"/>
 <weld name="stuck" body1="tip" body2="late"/><joint name="law" joint1="led" joint2="turn" polycoef="0 1 2 0 0"/></equality></mujoco>"""
+HELD_CHAIN = f"""<mujoco model="m"><worldbody><body name="hand"><joint name="h"/>{BALL}</body><body name="peg" pos="1 0 0"><joint name="s" type="slide"/>{BALL}
+<body name="tip" pos="0 0 1"><joint name="x" axis="1 0 0"/><joint name="y" axis="0 1 0"/>{BALL}</body></body></worldbody>
+<equality><weld name="hold" body1="hand" body2="tip"/></equality></mujoco>"""
 CROSSED = """<robot name="m"><link name="a"/><link name="b"/><joint name="j" type="prismatic"><parent link="a"/><child link="b"/>
 <axis xyz="1 0 0"/><limit lower="2" upper="1" effort="1" velocity="1"/></joint></robot>"""
 PUSHED = (
@@ -46,6 +49,7 @@ CASES = {
     "two free bases, one of them at the origin": ("m.xml", TWO_BASES, SAME),
     "a slide and a ball above one body": ("m.xml", SLIDE_AND_BALL, SAME),
     "closures that hold free bodies, or join what is joined": ("m.xml", CLOSURES, LIMITED),
+    "a closure that holds the end of a chain": ("m.xml", HELD_CHAIN, SAME),
     "limits that are crossed": ("m.urdf", CROSSED, SAME),
     "negative damping and stiffness": ("m.xml", PUSHED, LIMITED),
     "two sensors of one name": ("m.urdf", TWICE, SAME),

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from hymeko_x.backends.sdf.sheet import SdfSheet
+    from hymeko_x.ir.mechanism import Mechanism
 
 
 def document(sheet: SdfSheet) -> Tag:
@@ -119,7 +120,7 @@ def _members(sheet: SdfSheet) -> dict[str, dict[Id, None]]:
     """What each model contains, in order: the author's, else links, joints and frames; a model in it is given by its frame."""
     mechanism = sheet.mechanism
     found: dict[str, dict[Id, None]] = {}
-    for key in dict.fromkeys([*(key for key in mechanism.layout if _is_member(key, sheet)), *_all(sheet)]):
+    for key in _closures_last(dict.fromkeys([*(key for key in mechanism.layout if _is_member(key, sheet)), *_all(sheet)]), mechanism):
         inner = _scope_of_model(key)
         scope = words.split_scope(key.name if inner is None else inner.removesuffix(words.SCOPE))[0]
         if not scope and mechanism.notation(key, notations.IN_WORLD):
@@ -129,6 +130,23 @@ def _members(sheet: SdfSheet) -> dict[str, dict[Id, None]]:
         if inner is not None:
             found.setdefault(inner, {})
     return found
+
+
+def _closures_last(order: Iterable[Id], mechanism: Mechanism) -> Iterable[Id]:
+    """The elements in order, but each closure behind the joint above its link: the first joint that leads to a link is that of the tree."""
+    waiting: dict[Id, list[Id]] = {}
+    done: set[Id] = set()
+    members = tuple(order)
+    joints = {key for key in members if key.kind == "joint"}
+    for key in members:
+        edge = mechanism.graph.edges.get(key)
+        above = mechanism.parent_joint.get(edge.arcs[-1].target) if edge is not None and key.kind == "loop" else None
+        if above is not None and above.id in joints - done:
+            waiting.setdefault(above.id, []).append(key)
+            continue
+        done.add(key)
+        yield key
+        yield from waiting.get(key, ())
 
 
 def _enter(found: dict[str, dict[Id, None]], scope: str) -> None:
