@@ -46,10 +46,10 @@ class _Result(Struct, frozen=True):
     at: str = ""
     mesh_at: str = ""
     missing: str = ""
-    flat: bool = False
-    """Whether flat meshes on one side are thin solids on the other, whose format has no flat ones that collide."""
     lost: tuple[str, ...] = ()
     """Meshes of the first robot that its reader cannot load, and that the second one does not have."""
+    flat: bool = False
+    """Whether flat meshes on one side are thin solids on the other, whose format has no flat ones that collide."""
 
     @property
     def misfit(self) -> tuple[int, float, float]:
