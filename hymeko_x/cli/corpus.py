@@ -125,7 +125,7 @@ def _download_progress(packages: tuple[WheelPackage, ...]) -> Iterator[cache.Wat
 
 
 def _silent(package: WheelPackage, received: int) -> None:
-    """Nobody watches."""
+    """Progress without a bar: nothing."""
 
 
 # ---- run ---------------------------------------------------------------------------------------------------------------

@@ -98,7 +98,7 @@ def _samples(text: str) -> int:
 
 
 def exit_code(verdict: Verdict, *, strict: bool = False) -> int:
-    """0 for the same robot, 4 for another one, 1 where that cannot be told; with ``strict`` 4 where a format cannot say everything."""
+    """0 for the same robot, 4 for another one, 1 where that is unknown; with ``strict`` 4 where a format cannot say everything."""
     if verdict.reason:
         return exits.FAILED
     return exits.DIFFERENT if verdict.failed or (strict and verdict.gaps) else exits.DONE

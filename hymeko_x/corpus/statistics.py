@@ -180,7 +180,7 @@ def _is_same() -> pl.Expr:
 
 
 def _unsaid_losses(legs: pl.DataFrame) -> pl.Expr:
-    """How much the target's own words do not say: the losses of physics and settings, where the run told these from all losses."""
+    """How much the target's own words do not say: the losses of physics and settings, where the run distinguishes these from all losses."""
     import polars as pl
 
     return pl.coalesce("physical", "losses") if "physical" in legs.columns else pl.col("losses")

@@ -85,9 +85,9 @@ def _with_inertias(robot: Mechanism, files: Files | None, report: Report | None)
     from hymeko_x.rewrite.context import Context
     from hymeko_x.rewrite.inertia import fill_tensors
 
-    told = Report() if report is None else report
+    found = Report() if report is None else report
     beside = DiskFiles(Path(robot.source.file).parent, {}, (), None) if files is None else files
-    return fill_tensors(pipeline.fully_completed(robot, beside, told), Context(told))
+    return fill_tensors(pipeline.fully_completed(robot, beside, found), Context(found))
 
 
 class _Callable(ModuleType):

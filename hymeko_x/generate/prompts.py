@@ -1,4 +1,4 @@
-"""What the model is asked, and told."""
+"""The questions to the model, and the feedback on its answers."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ def _joins(image: Mechanism, source: Mechanism) -> Iterable[Join]:
 
 
 def _agree_in_poses(image: Mechanism, source: Mechanism) -> bool:
-    """Whether all bodies hang on the same bodies in the same places, so that no frame can be another one."""
+    """Whether all bodies have the same parents at the same poses, so that no frame can be another one."""
     below = image.parent_joint
     for body, view in source.parent_joint.items():
         other = below.get(body)

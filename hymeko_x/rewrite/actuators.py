@@ -51,7 +51,7 @@ def drop_idle_actuators(mechanism: Mechanism, context: Context) -> Mechanism:
 
 
 def without_actuators(mechanism: Mechanism, actuators: list[Id]) -> Mechanism:
-    """The mechanism without these actuators and the edges that hang on them."""
+    """The mechanism without these actuators and the edges that lead to them."""
     if not actuators:
         return mechanism
     gone = set(actuators)

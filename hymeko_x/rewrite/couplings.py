@@ -97,27 +97,27 @@ def drop_odd_tendons(mechanism: Mechanism, context: Context) -> Mechanism:
     placed = {view.thing for views in mechanism.mounts.values() for view in views}
     gone: set[Id] = set()
     for key, tendon, arcs in mechanism.edges(Tendon):
-        wrong = wrong_path(replace(tendon, armature=0.0), arcs, mechanism.graph.edges) or _nowhere(mechanism, arcs, placed)
+        wrong = wrong_path(replace(tendon, armature=0.0), arcs, mechanism.graph.edges) or _unplaced_site(mechanism, arcs, placed)
         if wrong is not None:
             gone.add(key)
             context.report.warn(codes.NOT_SAID, f"{key} is left out: its path {wrong}", mechanism.origin(key), element=str(key))
     if not gone:
         return mechanism
-    hanging = [key for key, edge in mechanism.graph.edges.items() if _hangs_on(edge, gone)]
-    ends = {arc.target for key in hanging for arc in mechanism.graph.edges[key].arcs}
+    dependent = [key for key, edge in mechanism.graph.edges.items() if _leads_to(edge, gone)]
+    ends = {arc.target for key in dependent for arc in mechanism.graph.edges[key].arcs}
     things = [end for end in ends if end.kind in ("actuator", "sensor")]
-    return mechanism.replace(without=[*gone, *hanging, *things])
+    return mechanism.replace(without=[*gone, *dependent, *things])
 
 
-def _nowhere(mechanism: Mechanism, arcs: tuple[RobotArc, ...], placed: set[Id]) -> str | None:
-    """Whether a path leads through a site that is on no body."""
+def _unplaced_site(mechanism: Mechanism, arcs: tuple[RobotArc, ...], placed: set[Id]) -> str | None:
+    """The complaint about a path that leads through a site which is on no body, or None."""
     for arc in arcs:
         if arc.target.kind == "frame" and not (arc.target in placed and isinstance(mechanism.graph.vertices.get(arc.target), Frame)):
             return f"leads through {arc.target}, which is on no body"
     return None
 
 
-def _hangs_on(edge: RobotEdge, gone: set[Id]) -> bool:
+def _leads_to(edge: RobotEdge, gone: set[Id]) -> bool:
     return isinstance(edge.data, Coupling | Drive | Sense) and any(arc.target in gone for arc in edge.arcs)
 
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.backends.mjcf.geoms import geom_tag
-from hymeko_x.backends.mjcf.joints import joint_tag
+from hymeko_x.backends.mjcf.geoms import write_geom
+from hymeko_x.backends.mjcf.joints import write_dof
 from hymeko_x.backends.mjcf.mounts import mount_tag
 from hymeko_x.backends.mjcf.sheet import open_body, tag_of
 from hymeko_x.formats.mjcf.codec import POSE
@@ -45,9 +45,9 @@ def _filled(sheet: MjcfSheet, body: BodyTag) -> list[BodyTag]:
     if inertial is not None:
         _add_inertial(sheet, body, inertial)
     for number in range(len(view.joint.dofs) if view is not None else 0):
-        joint_tag(sheet, body, view, number)  # type: ignore[arg-type]
+        write_dof(sheet, body, view, number)  # type: ignore[arg-type]
     for shape in mechanism.shapes.get(key, ()):
-        geom_tag(sheet, body, shape)
+        write_geom(sheet, body, shape)
     for mount in mechanism.mounts.get(key, ()):
         mount_tag(sheet, body, mount)
     if key == WORLD:

@@ -28,7 +28,7 @@ def _is_of_water(sheet: MjcfSheet, view: ShapeView, base: Mapping[str, str]) -> 
     return sheet.from_mjcf and weighs and "density" in base
 
 
-def geom_tag(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
+def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     """A shape on its body. One that did not come from MJCF has the class of its role."""
     key, shape = view.id, view.shape
     if isinstance(shape.geometry, NoShape) and not sheet.from_mjcf:

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 _NO_AXIS = (DofKind.BALL, DofKind.FREE)
 
 
-def joint_tag(sheet: MjcfSheet, body: BodyTag, view: JointView, number: int) -> None:
-    """One dof of the joint that leads to a body."""
+def write_dof(sheet: MjcfSheet, body: BodyTag, view: JointView, number: int) -> None:
+    """One dof of the joint that leads to a body, as an element of the body's tag."""
     key, dof = view.id, view.joint.dofs[number]
     prefix = str(number + 1) if len(view.joint.dofs) > 1 else ""
     path = f"joint[{prefix}]" if prefix else ""

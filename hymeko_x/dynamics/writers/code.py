@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.dynamics.writers.program import graph_of, program_of, told
+from hymeko_x.dynamics.writers.program import description, graph_of, program_of
 
 if TYPE_CHECKING:
     from hymeko_x.dynamics.system import System
@@ -37,7 +37,7 @@ def write_python(system: System) -> str:
     renamed = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2", "abs": "abs"}
     program = program_of(system, _names, texts=_prefixed("np", renamed))
     body = [f"    {target} = {text}" for target, text in program.assignments]
-    lines = [*told(system, "#"), "", "import numpy as np", "", *_tables(system), "", ""]
+    lines = [*description(system, "#"), "", "import numpy as np", "", *_tables(system), "", ""]
     for name, results, summary in (
         ("rates", program.rates, "The time derivatives of the states x under the inputs u."),
         ("outputs", program.outputs, "The outputs at the states x and inputs u."),
@@ -52,7 +52,7 @@ def write_casadi(system: System) -> str:
     program = program_of(system, _names, texts=_prefixed("casadi", {}))
     sizes = (len(system.states), len(system.inputs), len(system.parameters))
     x, u, p = (f'{letter} = casadi.SX.sym("{letter}", {size})' for letter, size in zip("xup", sizes, strict=True))
-    lines = [*told(system, "#"), "", "import casadi", "", *_tables(system), "", x, u, p]
+    lines = [*description(system, "#"), "", "import casadi", "", *_tables(system), "", x, u, p]
     lines += [f"{target} = {text}" for target, text in program.assignments]
     lines += [f"rates = casadi.vertcat({', '.join(program.rates)})", f"outputs = casadi.vertcat({', '.join(program.outputs)})"]
     lines.append('dynamics = casadi.Function("dynamics", [x, u, p], [rates, outputs], ["x", "u", "p"], ["rates", "outputs"])')
@@ -70,7 +70,7 @@ def write_sympy(system: System) -> str:
     parts = (system.states, system.inputs, system.parameters)
     groups = [sympy.symbols(f"{letter}:{len(part)}", real=True) if part else () for letter, part in zip("xup", parts, strict=True)]
     used = "Abs, Matrix, S, acos, asin, atan, atan2, cos, exp, log, sign, sin, sqrt, symbols, tan, tanh"
-    lines = [*told(system, "#"), "", f"from sympy import {used}  # noqa: F401", "", *_tables(system), ""]
+    lines = [*description(system, "#"), "", f"from sympy import {used}  # noqa: F401", "", *_tables(system), ""]
     for letter, group in zip("xup", groups, strict=True):
         names = ", ".join(map(str, group))
         lines.append(f'{letter} = ({names},) = symbols("{letter}:{len(group)}", real=True)' if group else f"{letter} = ()")
@@ -87,5 +87,5 @@ def write_c(system: System) -> str:
 
     generator = casadi.CodeGenerator("dynamics.c", {"with_header": False})
     generator.add(graph_of(system))
-    arrays = "\n".join(f"/* {line} */" for line in told(system, ""))
+    arrays = "\n".join(f"/* {line} */" for line in description(system, ""))
     return f"{arrays}\n{generator.dump()}"

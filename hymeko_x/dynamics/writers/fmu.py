@@ -8,7 +8,7 @@ import zipfile
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.dynamics.writers.modelica import identifier
-from hymeko_x.dynamics.writers.program import program_of, told
+from hymeko_x.dynamics.writers.program import description, program_of
 from hymeko_x.ir.values import number_text
 from hymeko_x.xml.text import escaped
 
@@ -114,7 +114,7 @@ def _code(system: System) -> str:
     starts = [entry.start or 0.0 for entry in _entries(system)]
     return "\n".join(
         [
-            *told(system, "//"),
+            *description(system, "//"),
             "#include <math.h>",
             "#include <stdbool.h>",
             "#include <stdint.h>",

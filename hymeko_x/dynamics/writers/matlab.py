@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.dynamics.writers.program import told
+from hymeko_x.dynamics.writers.program import description
 from hymeko_x.ir.values import number_text
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def _matrices(space: StateSpace) -> list[str]:
 def write_octave(system: System, space: StateSpace) -> str:
     """A script for Octave (package control) and MATLAB (Control System Toolbox): A, B, C, D, the system, and its step response."""
     names = [f"{name} = {{{', '.join(repr(v.name) for v in part)}}};" for name, part in _groups(space)]
-    lines = [*told(system, "%"), "if exist('OCTAVE_VERSION', 'builtin'), pkg load control; end", *_matrices(space), *names]
+    lines = [*description(system, "%"), "if exist('OCTAVE_VERSION', 'builtin'), pkg load control; end", *_matrices(space), *names]
     lines += [
         "model = ss(A, B, C, D);",
         "t = (0:1000)' / 500;",
@@ -52,7 +52,7 @@ def write_simulink(system: System, space: StateSpace) -> str:
     name = "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in system.name) or "model"
     name = name if name[0].isalpha() else f"m_{name}"
     many_in, many_out = len(space.inputs), len(space.outputs)
-    lines = [*told(system, "%"), *_matrices(space), f"model = '{name}';", "new_system(model); open_system(model);"]
+    lines = [*description(system, "%"), *_matrices(space), f"model = '{name}';", "new_system(model); open_system(model);"]
     blocks = [
         ("simulink/Signal Routing/Mux", "u", f"'Inputs', '{max(many_in, 1)}'"),
         ("simulink/Math Operations/Gain", "B", "'Gain', 'B', 'Multiplication', 'Matrix(K*u)'"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from hymeko_x.dynamics.writers.program import program_of, told
+from hymeko_x.dynamics.writers.program import description, program_of
 from hymeko_x.ir.values import number_text
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def write_modelica(system: System) -> str:
     program = program_of(system, lambda letter, k: names[letter][k])
     model = _free(identifier(system.name), taken)
     unit = {v.name: f'(unit="{_unit(v.unit)}"' if v.unit else "(" for group in groups.values() for v in group}
-    lines = [*told(system, "//"), f"model {model}"]
+    lines = [*description(system, "//"), f"model {model}"]
     for name, v in zip(names["p"], system.parameters, strict=True):
         lines.append(f"  parameter Real {name}{_closed(unit[v.name])} = {number_text(v.value)};")
     for name, v in zip(names["u"], system.inputs, strict=True):

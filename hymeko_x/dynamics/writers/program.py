@@ -83,7 +83,7 @@ def program_of(system: System, names: Callable[[str, int], str], *, texts: Mappi
     return Program(tuple(assignments), rates, measured)
 
 
-def told(system: System, mark: str) -> list[str]:
+def description(system: System, mark: str) -> list[str]:
     """Comment lines that say where a generated file comes from and what its variables are."""
     lines = [f"{mark} {system.name}: equations of motion, written by hymeko-x. SI units and rad."]
     for letter, variables in (("x", system.states), ("u", system.inputs), ("y", system.outputs), ("p", system.parameters)):
