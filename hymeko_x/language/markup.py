@@ -9,7 +9,7 @@ Numbers and words are plain where their text is the shortest there is, everythin
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from hymeko_x import formats
 from hymeko_x.ir.values import number_text
@@ -64,6 +64,27 @@ def text_of_value(value: Value | None) -> str | None:
         parts = [number_text(part) if type(part) is float else None for part in value]
         return None if None in parts else " ".join(map(str, parts))
     return None
+
+
+def are_several(value: object) -> TypeGuard[tuple[Value, ...]]:
+    """Whether a value is a list of words and texts, which stands for as many elements; a list of numbers is one text."""
+    return type(value) is tuple and all(
+        isinstance(part, str) or (isinstance(part, Ref) and text_of_value(part) is not None) for part in value
+    )
+
+
+def separate(item: Item) -> list[Item]:
+    """The elements of an item that has a list of texts in parentheses: one for each of them, which is like the others."""
+    parameters = item.parameters if isinstance(item, Node) else None
+    place = next((place for place, each in enumerate(parameters or ()) if are_several(each.default)), None)
+    if place is None or not isinstance(item, Node) or parameters is None:
+        return [item]
+    several = parameters[place]
+    assert is_list(several.default)
+    return [
+        item._replace(parameters=(*parameters[:place], several._replace(default=text), *parameters[place + 1 :]))
+        for text in several.default
+    ]
 
 
 class _Open(NamedTuple):

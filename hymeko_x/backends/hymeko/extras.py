@@ -8,7 +8,8 @@ from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.language import markup
 from hymeko_x.language.classes import definitions_of, is_section
 from hymeko_x.language.markup import INDENT, PLACE, TEXT, block_of, markup_of, usual_spacing
-from hymeko_x.language.syntax import Comment, Field, Item, Node, QuotedName, Ref, Value
+from hymeko_x.language.printer import print_item
+from hymeko_x.language.syntax import Comment, Field, Item, Node, QuotedName, Ref, Value, is_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from hymeko_x.language.markup import Spacing
 
 _FORMATS = FOREIGN - {"hymeko"}
+_WIDEST = 110
+"""Letters of an element with a list of texts, without its content."""
 _OWN_WORDS = frozenset({PLACE, INDENT, TEXT, markup.COMMENT})
 
 
@@ -53,7 +56,7 @@ def standing_items(extras: list[Extra], *, classes: bool = False) -> list[Item]:
             continue
         last = items[-1] if items else None
         if node is not None and isinstance(last, Node) and last.name == extra.format:
-            items[-1] = last._replace(items=(*last.items, node))
+            items[-1] = last._replace(items=_with_element(last.items, node))
         elif node is not None:
             items.append(Node(extra.format, (node,)))
         elif extra.format == "comment" and is_standing(extra):
@@ -61,6 +64,28 @@ def standing_items(extras: list[Extra], *, classes: bool = False) -> list[Item]:
         else:
             items.append(verbatim(extra, at_root=True))
     return items
+
+
+def _with_element(items: tuple[Item, ...], node: Node) -> tuple[Item, ...]:
+    """The elements of a block with one more, which is one element with the last one where they differ in one text in parentheses."""
+    last = items[-1]
+    merged = _merged(last, node) if isinstance(last, Node) else None
+    return (*items, node) if merged is None else (*items[:-1], merged)
+
+
+def _merged(first: Node, second: Node) -> Node | None:
+    """Two elements as one with a list of texts; None where they differ otherwise, or the list is long."""
+    old, new = first.parameters or (), second.parameters or ()
+    differing = [place for place, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
+    if len(old) != len(new) or len(differing) != 1 or first._replace(parameters=new) != second:
+        return None
+    place = differing[0]
+    known = old[place].default
+    texts = (*(known if is_list(known) else (known,)), new[place].default)
+    if old[place].name != new[place].name or not markup.are_several(texts):
+        return None
+    merged = second._replace(parameters=(*old[:place], new[place]._replace(default=texts), *old[place + 1 :]))
+    return merged if len(print_item(merged._replace(items=()))) <= _WIDEST else None
 
 
 def is_standing(extra: Extra) -> bool:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.ir.mechanism import Extra
-from hymeko_x.language.markup import INDENT, ONE_LINE, PLACE, TEXT, Spacing, markup_of, text_of_value, usual_spacing
+from hymeko_x.language.markup import INDENT, ONE_LINE, PLACE, TEXT, Spacing, markup_of, separate, text_of_value, usual_spacing
 from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, is_field, is_list
 
 if TYPE_CHECKING:
@@ -59,8 +59,9 @@ def _read_place(home: _Home, block: Node, place: int, reader: ValueReader) -> li
         elif isinstance(item, Field) and block.parameters is None:
             found.append(Extra(home.format, f"{home.path}/@{item.name}" if home.path else f"@{item.name}", read_text(item, reader)))
         else:
-            found.append(Extra(home.format, home.path, _markup(item, spacing, reader), place))
-            place += 1
+            for element in separate(item):
+                found.append(Extra(home.format, home.path, _markup(element, spacing, reader), place))
+                place += 1
     return found
 
 
