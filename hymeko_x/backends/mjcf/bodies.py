@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x.backends.mjcf.geoms import write_geom
 from hymeko_x.backends.mjcf.joints import write_dof
-from hymeko_x.backends.mjcf.mounts import mount_tag
+from hymeko_x.backends.mjcf.mounts import write_mount
 from hymeko_x.backends.mjcf.sheet import open_body, tag_of
 from hymeko_x.formats.mjcf.codec import POSE
 from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
@@ -49,7 +49,7 @@ def _filled(sheet: MjcfSheet, body: BodyTag) -> list[BodyTag]:
     for shape in mechanism.shapes.get(key, ()):
         write_geom(sheet, body, shape)
     for mount in mechanism.mounts.get(key, ()):
-        mount_tag(sheet, body, mount)
+        write_mount(sheet, body, mount)
     if key == WORLD:
         return [_add_body(sheet, body, root, mechanism.parent_joint.get(root)) for root in mechanism.roots]
     return [_add_body(sheet, body, joint.child, joint) for joint in mechanism.children.get(key, ())]

@@ -21,13 +21,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import ShapeView
 
 
-def _is_of_water(sheet: MjcfSheet, view: ShapeView, base: Mapping[str, str]) -> bool:
-    """Whether the mass of a body follows from a shape without a density, which the class of that would give another one."""
-    part = sheet.mechanism.graph.vertices.get(view.body)
-    weighs = isinstance(part, Body) and part.inertial is None and view.shape.mass is None and view.shape.density is None
-    return sheet.from_mjcf and weighs and "density" in base
-
-
 def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     """A shape on its body. One that did not come from MJCF has the class of its role."""
     key, shape = view.id, view.shape
@@ -57,3 +50,10 @@ def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     own = {**found, **kept}
     own |= role_attributes(shape.role, {**base, **own}) if sheet.from_mjcf else {}
     body.add(tag_of("geom", {"name": shape.name or None, "class": own_class, **own}, sheet.inside(key), view.body), frame)
+
+
+def _is_of_water(sheet: MjcfSheet, view: ShapeView, base: Mapping[str, str]) -> bool:
+    """Whether the mass of a body follows from a shape without a density, which the class of that would give another one."""
+    part = sheet.mechanism.graph.vertices.get(view.body)
+    weighs = isinstance(part, Body) and part.inertial is None and view.shape.mass is None and view.shape.density is None
+    return sheet.from_mjcf and weighs and "density" in base

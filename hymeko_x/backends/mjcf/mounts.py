@@ -19,7 +19,7 @@ _PLAIN_LIGHT = (LIGHT[1], LIGHT[0], LIGHT[2])
 """With its type first, as one reads it."""
 
 
-def mount_tag(sheet: MjcfSheet, body: BodyTag, mount: MountView) -> None:
+def write_mount(sheet: MjcfSheet, body: BodyTag, mount: MountView) -> None:
     """A frame, camera or light on its body."""
     key, pose = mount.thing, mount.pose
     match sheet.mechanism.graph.vertices.get(key):
