@@ -76,3 +76,11 @@ def test_a_size_of_zero_is_very_small() -> None:
     """Source: libsdformat, Sphere.cc: a radius that is not above zero becomes 1."""
     point = '<robot name="m"><link name="a"><visual><geometry><sphere radius="0"/></geometry></visual></link></robot>'
     assert hx.dumps(hx.loads(point, "urdf"), "sdf").count("<radius>1e-6</radius>") == 1
+
+
+@pytest.mark.unread("HX101")
+def test_a_camera_is_as_wide_as_libsdformat_demands() -> None:
+    """Source: libsdformat, camera.sdf: the least horizontal field of view is 0.1 rad."""
+    text = f'<mujoco model="m"><worldbody><body name="a">{BALL}<camera name="eye" fovy="4"/></body></worldbody></mujoco>'
+    written = hx.dumps(hx.loads(text, "mjcf").mechanism, "sdf")
+    assert 0.1 <= float(written.partition("<horizontal_fov>")[2].partition("<")[0]) < 0.1 + 1e-8

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -14,9 +15,10 @@ from hymeko_x.backends.sdf.loops import close_loops_by_joints
 from hymeko_x.backends.sdf.names import make_names_unique_in_models, make_names_unique_on_links
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
+from hymeko_x.formats.sdf.sensors import IMAGE, LEAST_FOV
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge
 from hymeko_x.ir.names import names_in_use
-from hymeko_x.ir.parts import Body, Dof, DofKind, Frame, Joint, Light, Mount, Shape
+from hymeko_x.ir.parts import Body, Camera, Dof, DofKind, Frame, Joint, Light, Mount, Shape
 from hymeko_x.ir.values import ZERO, Pose, compose, quat_about, scaled
 from hymeko_x.rewrite.chains import chain_dofs
 from hymeko_x.rewrite.couplings import make_couplings_scalar
@@ -124,6 +126,20 @@ _REFUSED: Mapping[str, Callable[[Dof], Dof]] = MappingProxyType(
 """The numbers that are refused, and the dof without them."""
 
 
+def widen_cameras(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A camera whose image is narrower than 0.1 rad, for which libsdformat refuses the file, is as wide as that."""
+    vertices: dict[Id, Camera] = {}
+    for key, camera in mechanism.vertices(Camera):
+        width, height = camera.resolution or (IMAGE[0].default, IMAGE[1].default)
+        least = 2.0 * math.atan(math.tan(LEAST_FOV / 2.0) * height / width) if width > 0 else 0.0
+        if camera.fovy is None or camera.fovy >= least:
+            continue
+        vertices[key] = replace(camera, fovy=least)
+        message = f"{key} has a vertical field of view of {camera.fovy:.6g} rad, SDF has no image below 0.1 rad; {least:.6g} is written"
+        context.report.warn(codes.REWRITTEN, message, mechanism.origin(key), element=str(key))
+    return mechanism.replace(vertices=vertices)
+
+
 # ---- the world ---------------------------------------------------------------------------------------------------------------
 
 
@@ -164,6 +180,7 @@ RULES: tuple[Rule, ...] = (
     chain_joints,
     unless_from_sdf(close_loops_by_joints),
     make_couplings_scalar,
+    unless_from_sdf(widen_cameras),
     put_world_geometry_on_a_link,
     unless_from_sdf(give_every_body_mass),
     prefer_own_colours,

@@ -20,3 +20,5 @@ HFOV = Field("horizontal_fov", "horizontal_fov", NUMBER, 1.047)
 IMAGE = (Field("image/width", "width", NUMBER, 320.0), Field("image/height", "height", NUMBER, 240.0))
 LIGHTS: Mapping[str, str] = MappingProxyType({"point": "point", "spot": "spot", "directional": "directional"})
 """The kind of a light by its type; the same words."""
+LEAST_FOV = 0.1 + 1e-9
+"""The least horizontal field of view in rad that libsdformat accepts, with room for rounding."""
