@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from hymeko_x.source import Source
 
 _ASSETS = "meshes"
-_ASSET_KINDS = frozenset({"mesh", "material", "texture"})
+_ASSET_KINDS = ("mesh", "material", "texture")
+"""A texture is used by the materials that it is a layer of."""
 _MOST_MISSING = 10
 """How many edits that did not arrive are listed."""
 _MOST_ROUNDS = 4
@@ -206,10 +207,14 @@ def _broken(original: Source, error: Refusal) -> Refusal:
 def _without_unused(before: Mechanism, after: Mechanism) -> Mechanism:
     """The edited robot without meshes and materials that only it lists and that no shape has, as where a body was removed."""
     graph = after.graph
-    new = (key for key in graph.vertices if key.kind in _ASSET_KINDS and key not in before.graph.vertices)
-    unused = {key for key in new if not graph.incidence.get(key)}
-    extras = {key: found for key, found in after.extras.items() if key not in unused}
-    return replace(after.with_graph(graph.replace(without=unused)), extras=extras) if unused else after
+    new = [key for key in graph.vertices if key.kind in _ASSET_KINDS and key not in before.graph.vertices]
+    gone: set[Id] = set()
+    for key in sorted(new, key=lambda key: _ASSET_KINDS.index(key.kind)):
+        edges = {found.edge for found in graph.incidence.get(key, ())}
+        if all(edge in gone or (key.kind == "material" and edge.kind == "layer") for edge in edges):
+            gone |= {key, *edges}
+    extras = {key: found for key, found in after.extras.items() if key not in gone}
+    return replace(after.with_graph(graph.replace(without=gone)), extras=extras) if gone else after
 
 
 def _is_weight(edit: Difference) -> bool:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import mujoco
 import pytest
+from PIL import Image
 
 import hymeko_x as hx
 
@@ -98,8 +99,9 @@ def test_masses_have_no_place_where_the_engine_counts_shapes(tmp_path: Path) -> 
 def test_a_mesh_that_no_shape_has_any_more_is_no_edit(tmp_path: Path) -> None:
     """The converted file still lists the mesh of a body that was removed."""
     facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet"
+    Image.new("RGB", (2, 2)).save(tmp_path / "white.png")
     (tmp_path / "tip.stl").write_text(f"solid tip\n{facet}\nendsolid\n")
-    white = '<material name="white"><color rgba="1 1 1 1"/></material>'
+    white = '<material name="white"><color rgba="1 1 1 1"/><texture filename="white.png"/></material>'
     mesh = f'<visual><geometry><mesh filename="tip.stl"/></geometry>{white}</visual>'
     tip = f'<link name="tip">{mesh}</link><joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint>'
     (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="base"/>{tip}</robot>')
