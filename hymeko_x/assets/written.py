@@ -7,7 +7,7 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir.names import free_name
-from hymeko_x.ir.parts import Material, Mesh, Role
+from hymeko_x.ir.parts import MESH_POINTS, Material, Mesh, Role
 from hymeko_x.ir.values import number_text, numbers_text
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def files_of_meshes(mechanism: Mechanism, within: str) -> dict[Id, str]:
     shown = _shown(mechanism)
     for key, mesh in mechanism.vertices(Mesh):
         if mesh.uri is None and mesh.vertices:
-            content = mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces, _subsets(mechanism, shown.get(key))
+            content = *(getattr(mesh, name) for name in MESH_POINTS), _subsets(mechanism, shown.get(key))
             if content in known:
                 found[key] = known[content]
                 continue
@@ -149,14 +149,21 @@ def _library(materials: tuple[_MtlMaterial, ...]) -> bytes:
 
 
 def obj_text(mesh: Mesh, library: str = "", materials: tuple[_MtlMaterial, ...] = ()) -> bytes:
-    """The points and faces of a mesh in their order, unscaled, as Wavefront OBJ, with its texture coordinates and materials."""
-    rows = mesh.texfaces or mesh.faces
-    has_places = bool(mesh.texcoords) and len(rows) == len(mesh.faces)
-    words = [f"{a + 1}/{b + 1}" for a, b in zip(mesh.faces, rows, strict=True)] if has_places else [str(a + 1) for a in mesh.faces]
+    """The points and faces of a mesh in their order, unscaled, as Wavefront OBJ, with texture coordinates, normals and materials."""
+    places, normals = mesh.texfaces or mesh.faces, mesh.normalfaces or mesh.faces
+    has_places = bool(mesh.texcoords) and len(places) == len(mesh.faces)
+    has_normals = bool(mesh.normals) and len(normals) == len(mesh.faces)
+    words = [str(at + 1) for at in mesh.faces]
+    if has_places:
+        words = [f"{word}/{at + 1}" for word, at in zip(words, places, strict=True)]
+    if has_normals:
+        words = [f"{word}{'/' if has_places else '//'}{at + 1}" for word, at in zip(words, normals, strict=True)]
     lines = [f"mtllib {library}"] if materials else []
     lines += [f"v {numbers_text(mesh.vertices[at : at + 3])}" for at in range(0, len(mesh.vertices), 3)]
     if has_places:
         lines += [f"vt {numbers_text(mesh.texcoords[at : at + 2])}" for at in range(0, len(mesh.texcoords), 2)]
+    if has_normals:
+        lines += [f"vn {numbers_text(mesh.normals[at : at + 3])}" for at in range(0, len(mesh.normals), 3)]
     used = _uses(materials)
     for number, at in enumerate(range(0, len(words), 3)):
         lines += [f"usemtl {used[number]}"] if number in used else []

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from hymeko_x import formats
 from hymeko_x.compare.diff import Difference
-from hymeko_x.ir.parts import Mesh, Role, Texture
+from hymeko_x.ir.parts import MESH_POINTS, Mesh, Role, Texture
 from hymeko_x.ir.values import number_text
 from hymeko_x.source import suffix_of
 
@@ -146,7 +146,7 @@ def _submesh(mesh: Mesh, data: bytes | None, of: Contents) -> Submesh | None:
 
     with suppress(Unreadable):
         if mesh.vertices and mesh.uri is None:
-            return _scaled(inline_part(mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces), mesh) if mesh.faces else None
+            return _scaled(inline_part(mesh), mesh) if mesh.faces else None
         suffix, read = suffix_of(mesh.uri or ""), formats.mesh_reader(of.mechanism)
         if data is not None:
             found = None if read is None else read(data, suffix)
@@ -164,15 +164,16 @@ def _nothing(name: str) -> bytes:
 
 def _reference(part: object) -> object:
     """How a mechanism has the content of an asset."""
-    return (part.uri, part.vertices, part.faces, part.texcoords, part.texfaces) if isinstance(part, Mesh) else getattr(part, "uri", None)
+    if isinstance(part, Mesh):
+        return part.uri, *(getattr(part, name) for name in MESH_POINTS)
+    return getattr(part, "uri", None)
 
 
 def _with_reference(part: object, other: Mesh | Texture) -> Mesh | Texture:
     """The part with the content of the other one, by reference or in itself."""
     assert isinstance(part, Mesh | Texture)
     if isinstance(part, Mesh) and isinstance(other, Mesh):
-        held = {name: getattr(other, name) for name in ("vertices", "faces", "texcoords", "texfaces")}
-        return replace(part, uri=other.uri, **held)
+        return replace(part, uri=other.uri, **{name: getattr(other, name) for name in MESH_POINTS})
     return replace(part, uri=other.uri)
 
 

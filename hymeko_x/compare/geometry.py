@@ -23,20 +23,20 @@ if TYPE_CHECKING:
 def meshes_as_files(mechanism: Mechanism, image: Mechanism, fetch: Fetch) -> Mechanism:
     """The mechanism with the image's reference in the place of points of its own that the image's file has, to the last one.
 
-    Same are points and texture coordinates in single precision, and triangles, in their order.
+    Same are points, texture coordinates and normals in single precision, and triangles, in their order.
     """
     changed: dict[Id, Mesh] = {}
     for key, mesh in mechanism.vertices(Mesh):
         other = image.graph.vertices.get(key)
         if mesh.vertices and isinstance(other, Mesh) and other.uri is not None and not other.vertices and _is_in(mesh, other.uri, fetch):
-            changed[key] = replace(mesh, uri=other.uri, vertices=(), faces=(), texcoords=(), texfaces=())
+            changed[key] = replace(mesh.without_points(), uri=other.uri)
     return mechanism.replace(vertices=changed)
 
 
 def without_points(mechanism: Mechanism, others: Mechanism) -> Mechanism:
     """The mechanism without the points of meshes that have become files in the other one: on the way home they are read from there."""
     bare = {
-        key: replace(mesh, vertices=(), faces=(), texcoords=(), texfaces=())
+        key: mesh.without_points()
         for key, mesh in mechanism.vertices(Mesh)
         if mesh.uri is None and mesh.vertices and others.vertex(key, Mesh).uri is not None
     }
@@ -82,11 +82,19 @@ def _is_in(mesh: Mesh, uri: str, fetch: Fetch) -> bool:
         return False
     if part is None:
         return False
-    is_same = _are_equal(mesh.vertices, part.points) and _are_equal(mesh.faces, part.faces)
-    if not mesh.texcoords or not is_same:
-        return is_same and not mesh.texcoords
-    rows = part.faces if part.corners is None else part.corners
-    return part.uv is not None and _are_equal(mesh.texcoords, part.uv) and _are_equal(mesh.texfaces or mesh.faces, rows)
+    return (
+        _are_equal(mesh.vertices, part.points)
+        and _are_equal(mesh.faces, part.faces)
+        and _has_table(mesh.texcoords, mesh.texfaces or mesh.faces, part.uv, part.corners, part.faces)
+        and _has_table(mesh.normals, mesh.normalfaces or mesh.faces, part.normals, part.normal_corners, part.faces)
+    )
+
+
+def _has_table(numbers: tuple[float, ...], rows: tuple[int, ...], table: Any, corners: Any, faces: Any) -> bool:
+    """Whether a file has the texture coordinates or the normals of a mesh, if the mesh has some."""
+    if not numbers:
+        return True
+    return table is not None and _are_equal(numbers, table) and _are_equal(rows, faces if corners is None else corners)
 
 
 def _are_equal(numbers: tuple[float, ...], table: Any) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import formats
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, pose_weight
-from hymeko_x.ir.parts import Body, DofKind, Joint, Mesh, Mount, Sense, Shape, Stance
+from hymeko_x.ir.parts import MESH_POINTS, Body, DofKind, Joint, Mesh, Mount, Sense, Shape, Stance
 from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
 from hymeko_x.rewrite.efforts import actuator_efforts
 from hymeko_x.rewrite.sites import is_link
@@ -27,7 +27,6 @@ _TURNING_FREELY = (DofKind.BALL, DofKind.FREE)
 _NO_AXES = (X, Z)
 """The axes of URDF and MJCF where none is given."""
 _WEIGHTS = ("mass", "density")
-_POINTS = ("vertices", "faces", "texcoords", "texfaces")
 _NO_NAME = "none"
 """How a difference shows that there is no name; a name is shown in quotes."""
 
@@ -69,7 +68,7 @@ def _is_described_otherwise(difference: Difference, before: Mechanism, after: Me
         return not field
     if field == "name":
         return difference.before == _NO_NAME
-    return key.kind == "mesh" and field in _POINTS and _came_as_file(before.graph.vertices.get(key), after.graph.vertices.get(key))
+    return key.kind == "mesh" and field in MESH_POINTS and _came_as_file(before.graph.vertices.get(key), after.graph.vertices.get(key))
 
 
 def _came_as_file(before: object, after: object) -> bool:

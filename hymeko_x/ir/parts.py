@@ -95,6 +95,7 @@ class Mesh(Struct, frozen=True):
 
     ``vertices`` and ``faces`` are flat (3 numbers each); ``name`` is set where the format names its meshes. ``texcoords`` are
     places in an image (flat, 2 numbers each, from its lower left corner), ``texfaces`` the rows of them at the corners of ``faces``.
+    ``normals`` are unit vectors (flat, 3 numbers each), ``normalfaces`` the rows of them at these corners.
     """
 
     uri: str | None = None
@@ -104,7 +105,16 @@ class Mesh(Struct, frozen=True):
     faces: tuple[int, ...] = ()
     texcoords: tuple[float, ...] = ()
     texfaces: tuple[int, ...] = ()
+    normals: tuple[float, ...] = ()
+    normalfaces: tuple[int, ...] = ()
 
+    def without_points(self) -> Mesh:
+        """The mesh without anything that a file of it would have."""
+        return Mesh(self.uri, self.scale, self.name)
+
+
+MESH_POINTS = ("vertices", "faces", "texcoords", "texfaces", "normals", "normalfaces")
+"""The fields of a mesh that a file of it would have."""
 
 # ---- vertices: things on a mechanism -----------------------------------------------------------------------------------------
 

@@ -20,11 +20,14 @@ if TYPE_CHECKING:
 
     from hymeko_x.meshes.submesh import Submesh
 
+_NORMAL = 2
+"""The place of the normal among the numbers of a corner."""
 _CONTINUED = (b"\\\n", b"\\\r")
 """The end of a line that continues in the next one."""
 _WIDTHS = (3, 6)
 """A point, or a point with a colour."""
 _UV_WIDTHS = (2, 3)
+_NORMAL_WIDTHS = (3, 3)
 """Two texture coordinates, or three, of which the last one is for solid textures."""
 
 
@@ -33,16 +36,19 @@ class _Lines(NamedTuple):
 
     points: list[bytes]
     places: list[bytes]
+    normals: list[bytes]
     faces: list[bytes]
     uses: list[tuple[int, str]]
     libraries: list[str]
 
 
-def obj_groups(data: bytes, fetch: Callable[[str], bytes | None] | None = None, *, mapped: bool = False) -> list[MaterialGroup] | None:
+def obj_groups(
+    data: bytes, fetch: Callable[[str], bytes | None] | None = None, *, mapped: bool = False, normals: bool = False
+) -> list[MaterialGroup] | None:
     """The triangles of an OBJ file by material, each with its entry in the file's libraries. None where the file is not plain.
 
     ``fetch`` returns a library by the name that the file has for it; without one, or without entries, all is one group.
-    Groups have texture coordinates where the material has an image, or where ``mapped`` asks for all of them.
+    Groups have texture coordinates where the material has an image, or where ``mapped`` asks for all of them, and ``normals`` if asked for.
     Source: B1. Object Files (.obj), Advanced Visualizer Manual.
     """
     lines = _lines_of(data)
@@ -55,10 +61,12 @@ def obj_groups(data: bytes, fetch: Callable[[str], bytes | None] | None = None, 
     try:
         points = _rows(lines.points, _WIDTHS)
         uv = _rows(lines.places, _UV_WIDTHS) if is_imaged else None
+        shading = _rows(lines.normals, _NORMAL_WIDTHS) if normals else None
         if points is None:
             return None
         polygons = _by_material(lines, lines.uses if entries else [])
-        groups = [_group(some, entries.get(some.material, MaterialEntry()), points, uv, mapped=mapped) for some in polygons]
+        tables = _Tables(points, uv, shading)
+        groups = [_group(some, entries.get(some.material, MaterialEntry()), tables, mapped=mapped) for some in polygons]
     except ValueError:  # a word that is no number
         return None
     plain = [group for group in groups if group is not None]
@@ -69,7 +77,7 @@ def _lines_of(data: bytes) -> _Lines | None:
     """The lines of a file; None where some continue in the next one, or begin with a blank."""
     if any(end in data for end in _CONTINUED):
         return None
-    found = _Lines([], [], [], [], [])
+    found = _Lines([], [], [], [], [], [])
     for line in data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n"):
         word = line[:2]
         if word == b"f ":
@@ -78,6 +86,8 @@ def _lines_of(data: bytes) -> _Lines | None:
             found.points.append(line[2:])
         elif word == b"vt":
             found.places.append(line[2:])
+        elif word == b"vn":
+            found.normals.append(line[2:])
         elif word[:1] in (b" ", b"\t") or word in (b"v\t", b"f\t"):
             return None
         elif line.startswith(b"usemtl"):
@@ -113,6 +123,14 @@ def _rows(rows: list[bytes], widths: tuple[int, int]) -> NDArray[np.float64] | N
 # ---- polygons ----------------------------------------------------------------------------------------------------------------
 
 
+class _Tables(NamedTuple):
+    """The points of a file, its texture coordinates, and its normals; the others None where they are missing or not wanted."""
+
+    points: NDArray[np.float64]
+    uv: NDArray[np.float64] | None
+    normals: NDArray[np.float64] | None
+
+
 class _Polygons(NamedTuple):
     """Polygons of one material, and their numbers in the file."""
 
@@ -137,26 +155,32 @@ def _form(row: bytes) -> str:
     return "".join("x" if field else "-" for corner in row.split(None, 1)[:1] for field in corner.split(b"/"))
 
 
-def _group(
-    some: _Polygons, entry: MaterialEntry, points: NDArray[np.float64], uv: NDArray[np.float64] | None, *, mapped: bool
-) -> MaterialGroup | None:
+def _group(some: _Polygons, entry: MaterialEntry, tables: _Tables, *, mapped: bool) -> MaterialGroup | None:
     """The triangles of one material; an image without texture coordinates is left out. None where they are not plain."""
     corners = _corners(some.rows)
     if corners is None:
         return None
     sizes, numbers, has_places = corners
     faces = fans(sizes, numbers[:, 0])
-    if not _are_rows(faces, points):
+    if not _are_rows(faces, tables.points):
         return None
     order = np.repeat(np.array(some.order, dtype=np.intp), np.maximum(sizes - 2, 0))
-    group = MaterialGroup(*used_rows(points, faces), some.material, entry._replace(image=""), order=order)
-    if not (entry.image or mapped) or uv is None or not has_places:
-        return group
-    places = fans(sizes, numbers[:, 1])
-    if not _are_rows(places, uv):
-        return group
-    own, places = used_rows(uv, places)
-    return group._replace(entry=entry, uv=own, corners=places)
+    group = MaterialGroup(*used_rows(tables.points, faces), some.material, entry._replace(image=""), order=order)
+    shaded = _of_corners(tables.normals, sizes, numbers[:, _NORMAL:])
+    if shaded is not None:
+        group = group._replace(normals=shaded[0], normal_corners=shaded[1])
+    places = _of_corners(tables.uv, sizes, numbers[:, 1:]) if (entry.image or mapped) and has_places else None
+    return group if places is None else group._replace(entry=entry, uv=places[0], corners=places[1])
+
+
+def _of_corners(
+    table: NDArray[np.float64] | None, sizes: NDArray[np.intp], numbers: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[Any]] | None:
+    """A table and its rows at the corners of triangles, of which the first column has those of the polygons; None where they do not fit."""
+    if table is None or not numbers.shape[1]:
+        return None
+    rows = fans(sizes, numbers[:, 0])
+    return used_rows(table, rows) if _are_rows(rows, table) else None
 
 
 def _corners(rows: list[bytes]) -> tuple[NDArray[np.intp], NDArray[np.int64], bool] | None:
@@ -180,14 +204,19 @@ def _are_rows(faces: NDArray[Any], table: NDArray[Any]) -> bool:
 
 
 def obj_bytes(part: Submesh) -> bytes:
-    """The part as a Wavefront OBJ file: points to float32 precision, texture coordinates, triangles."""
+    """The part as a Wavefront OBJ file: points to float32 precision, texture coordinates, normals, triangles."""
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (part.points + 0.0).tolist()]
+    columns, corner = [part.faces], "{}"
     if part.uv is not None:
         lines += [f"vt {u:.9g} {v:.9g}" for u, v in (part.uv + 0.0).tolist()]
-        corners = part.faces if part.corners is None else part.corners
-        lines += [f"f {a}/{u} {b}/{v} {c}/{w}" for a, b, c, u, v, w in (np.hstack([part.faces, corners]) + 1).tolist()]
-    else:
-        lines += [f"f {a} {b} {c}" for a, b, c in (part.faces + 1).tolist()]
+        columns.append(part.faces if part.corners is None else part.corners)
+        corner = "{}/{}"
+    if part.normals is not None:
+        lines += [f"vn {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (part.normals + 0.0).tolist()]
+        columns.append(part.faces if part.normal_corners is None else part.normal_corners)
+        corner += "/{}" if part.uv is not None else "//{}"
+    face = f"f {corner} {corner} {corner}"
+    lines += [face.format(*numbers) for numbers in (np.stack(columns, axis=2) + 1).reshape(len(part.faces), -1).tolist()]
     return ("\n".join(lines) + "\n").encode()
 
 

@@ -116,29 +116,33 @@ def are_proper(faces: NDArray[Any]) -> NDArray[np.bool_]:
     return np.asarray((first != second) & (second != third) & (third != first))
 
 
-def inline_part(
-    points: tuple[float, ...], faces: tuple[int, ...], places: tuple[float, ...] = (), corners: tuple[int, ...] = ()
-) -> Submesh:
-    """The triangles of a mesh that is given by flat lists; without faces, those of its convex hull are not computed.
+def inline_part(mesh: Mesh) -> Submesh:
+    """The triangles of a mesh that has its points; without faces, those of its convex hull are not computed.
 
-    ``places`` in an image and ``corners``, the rows of them, are left out where they do not fit.
+    Texture coordinates and normals are left out where they do not fit.
 
     Raises: Unreadable.
     """
-    table = np.array(points[: len(points) // 3 * 3], dtype=np.float64).reshape(-1, 3)
-    index = np.array(faces[: len(faces) // 3 * 3], dtype=np.int64).reshape(-1, 3)
+    table = np.array(mesh.vertices[: len(mesh.vertices) // 3 * 3], dtype=np.float64).reshape(-1, 3)
+    index = np.array(mesh.faces[: len(mesh.faces) // 3 * 3], dtype=np.int64).reshape(-1, 3)
     if len(table) == 0:
         raise Unreadable("it has no points")
     if len(index) and (index.min() < 0 or index.max() >= len(table)):
         raise Unreadable("a triangle has a corner that does not exist")
     if not np.isfinite(table).all():
         raise Unreadable("a coordinate is not a finite number")
-    uv = np.array(places, dtype=np.float64)
-    rows = np.array(corners or faces, dtype=np.int64)
-    is_there = rows.size == index.size > 0 and uv.size > 0 and uv.size % 2 == 0 and bool(np.isfinite(uv).all())
-    if not is_there or rows.min() < 0 or rows.max() >= uv.size // 2:
-        return Submesh(table, index)
-    return Submesh(table, index, uv.reshape(-1, 2), None, rows.reshape(-1, 3))
+    uv, corners = _of_corners(mesh.texcoords, mesh.texfaces or mesh.faces, 2, index.size)
+    normals, normal_corners = _of_corners(mesh.normals, mesh.normalfaces or mesh.faces, 3, index.size)
+    return Submesh(table, index, uv, None, corners, normals, normal_corners)
+
+
+def _of_corners(numbers: tuple[float, ...], rows: tuple[int, ...], width: int, size: int) -> Triangles | tuple[None, None]:
+    """A table and its rows for each of so many corners; nothing where they do not fit."""
+    table, index = np.array(numbers, dtype=np.float64), np.array(rows, dtype=np.int64)
+    is_there = index.size == size > 0 and table.size > 0 and table.size % width == 0 and bool(np.isfinite(table).all())
+    if not is_there or index.min() < 0 or index.max() >= table.size // width:
+        return None, None
+    return table.reshape(-1, width), index.reshape(-1, 3)
 
 
 def read_whole(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Submesh:
@@ -183,7 +187,7 @@ def _in_one_table(tables: list[Triangles]) -> Triangles:
 
 
 def _plain_groups(
-    data: bytes, suffix: str, fetch: Callable[[str], bytes | None] | None = None, *, mapped: bool = False
+    data: bytes, suffix: str, fetch: Callable[[str], bytes | None] | None = None, *, mapped: bool = False, normals: bool = False
 ) -> list[MaterialGroup]:
     """The triangles of each material of a plain COLLADA or OBJ file; nothing for other types, and where the file is not plain."""
     if suffix == ".dae":
@@ -193,7 +197,7 @@ def _plain_groups(
     if suffix == ".obj":
         from hymeko_x.meshes.obj import obj_groups
 
-        return obj_groups(data, fetch, mapped=mapped) or []
+        return obj_groups(data, fetch, mapped=mapped, normals=normals) or []
     return []
 
 
@@ -224,7 +228,7 @@ def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, mis
     check_file(data, suffix)
     if suffix in _IN_SCENES:
         return _coloured([_piece_of(part) for part in read_parts(data, suffix, fetch)])
-    groups = [group for group in _plain_groups(data, suffix, lambda name: _fetched(name, fetch)) if len(group.faces)]
+    groups = [group for group in _plain_groups(data, suffix, lambda name: _fetched(name, fetch), normals=True) if len(group.faces)]
     if not groups:
         return ColouredMesh(read_whole(data, suffix, fetch))
     images = _images(groups, fetch)
@@ -245,7 +249,7 @@ def read_mapped(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Subm
     Raises: Unreadable.
     """
     check_file(data, suffix)
-    groups = [group for group in (_plain_groups(data, suffix, mapped=True) if suffix == ".obj" else ()) if len(group.faces)]
+    groups = [group for group in (_plain_groups(data, suffix, mapped=True, normals=True) if suffix == ".obj" else ()) if len(group.faces)]
     if not groups or any(group.uv is None for group in groups):
         return read_whole(data, suffix, fetch)
     return _coloured([(None, group) for group in groups]).mesh
@@ -302,7 +306,16 @@ def _coloured(pieces: list[tuple[Appearance | None, MaterialGroup]]) -> Coloured
     faces = faces[order]
     proper = are_proper(faces)
     uv, corners = _places(groups)
-    part = Submesh(points, faces[proper], uv, None, None if corners is None else corners[order][proper])
+    normals, normal_corners = _normals(groups)
+    part = Submesh(
+        points,
+        faces[proper],
+        uv,
+        None,
+        None if corners is None else corners[order][proper],
+        normals,
+        None if normal_corners is None else normal_corners[order][proper],
+    )
     kinds = dict.fromkeys(appearance for appearance, _ in pieces if appearance is not None)
     numbers = {appearance: number for number, appearance in enumerate(kinds)}
     own = np.array([-1 if appearance is None else numbers[appearance] for appearance, _ in pieces])
@@ -332,11 +345,17 @@ def _places(groups: list[MaterialGroup]) -> Triangles | tuple[None, None]:
     )
 
 
+def _normals(groups: list[MaterialGroup]) -> Triangles | tuple[None, None]:
+    """The normals of all corners; nothing where a group has none."""
+    tables = [(group.normals, group.normal_corners) for group in groups if group.normals is not None and group.normal_corners is not None]
+    return put_in_one(tables) if len(tables) == len(groups) else (None, None)
+
+
 def triangles_of(mesh: Mesh, files: Files) -> Submesh | None:
     """All triangles of a mesh, unscaled; None where its file is missing or unreadable, which the conversion reports as it places it."""
     try:
         if mesh.vertices:
-            return inline_part(mesh.vertices, mesh.faces)
+            return inline_part(mesh)
         path = files.find(mesh.uri or "")
         if path is None:
             return None

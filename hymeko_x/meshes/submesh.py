@@ -31,7 +31,8 @@ class MaterialEntry(NamedTuple):
 class MaterialGroup(NamedTuple):
     """The triangles of one material in a file: points (n, 3), triangles (m, 3) as rows of them, and the material's name.
 
-    ``uv`` are texture coordinates (k, 2) from the lower left corner of the image, ``corners`` (m, 3) the rows of them, or both None.
+    ``uv`` are texture coordinates (k, 2) from the lower left corner of the image, ``corners`` (m, 3) the rows of them, or both None;
+    ``normals`` (l, 3) and ``normal_corners`` likewise.
     ``order`` (m) are ascending numbers by which the triangles of all groups are in the order of the file; None where they already are.
     """
 
@@ -42,6 +43,8 @@ class MaterialGroup(NamedTuple):
     uv: NDArray[np.float64] | None = None
     corners: NDArray[Any] | None = None
     order: NDArray[np.intp] | None = None
+    normals: NDArray[np.float64] | None = None
+    normal_corners: NDArray[Any] | None = None
 
 
 class Appearance(Struct, frozen=True):
@@ -57,7 +60,8 @@ class Submesh(Struct, frozen=True, eq=False):
     """The triangles of a mesh file that have one appearance (None = the file has none for them).
 
     ``points`` is (n, 3) in m in the frame of the file, ``faces`` (m, 3) rows of ``points``, ``uv`` (k, 2) or None; ``corners``
-    are the rows of ``uv`` of the triangles, None where they are those of ``points``.
+    are the rows of ``uv`` of the triangles, None where they are those of ``points``. ``normals`` (l, 3) and ``normal_corners`` are the same
+    for the normals of the corners.
     """
 
     points: NDArray[np.float64]
@@ -65,6 +69,8 @@ class Submesh(Struct, frozen=True, eq=False):
     uv: NDArray[np.float64] | None = None
     appearance: Appearance | None = None
     corners: NDArray[np.signedinteger[Any]] | None = None
+    normals: NDArray[np.float64] | None = None
+    normal_corners: NDArray[np.signedinteger[Any]] | None = None
 
 
 class ColouredMesh(NamedTuple):
@@ -82,9 +88,13 @@ class LoadedMesh(Mesh, frozen=True, eq=False, kw_only=True):
 
 def listed(part: Submesh) -> Mesh:
     """The mesh with its points and triangles as lists of its own."""
-    corners = part.faces if part.corners is None else part.corners
-    places = () if part.uv is None else (tuple(part.uv.ravel().tolist()), indices(corners))
-    return Mesh(None, (1.0, 1.0, 1.0), None, tuple(part.points.ravel().tolist()), indices(part.faces), *places)
+    places, normals = _listed(part.uv, part.corners, part.faces), _listed(part.normals, part.normal_corners, part.faces)
+    return Mesh(None, (1.0, 1.0, 1.0), None, tuple(part.points.ravel().tolist()), indices(part.faces), *places, *normals)
+
+
+def _listed(table: NDArray[Any] | None, corners: NDArray[Any] | None, faces: NDArray[Any]) -> tuple[tuple[float, ...], tuple[int, ...]]:
+    """A table of the corners as flat lists; empty where there is none."""
+    return ((), ()) if table is None else (tuple(table.ravel().tolist()), indices(faces if corners is None else corners))
 
 
 def indices(rows: NDArray[Any]) -> tuple[int, ...]:

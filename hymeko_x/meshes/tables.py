@@ -29,7 +29,8 @@ _FLAT = 1e-6
 
 
 def read_mesh(data: bytes, suffix: str) -> Submesh | None:
-    """The points and triangles that MuJoCo reads from a file, with texture coordinates from the lower left; None for other types.
+    """The points and triangles that MuJoCo reads from a file, with texture coordinates from the lower left and with the normals that the
+    file has; None for other types.
 
     Raises: Unreadable.
     """
@@ -68,7 +69,8 @@ def read_otherwise(data: bytes, suffix: str) -> tuple[Submesh, str] | None:
 
 def _are_flat_and_convex(lines: _Obj, points: NDArray[np.float64]) -> bool:
     """Whether the areas of the triangles of each polygon add up to its own, cut as a fan from its first corner and as MuJoCo does."""
-    sizes, corners, _ = _corners(lines)
+    sizes, fields = _corners(lines)
+    corners = fields[:, 0]
     rows, owners = cut(points.astype(np.float32), sizes, corners)
     fan = fans(sizes, np.arange(len(corners)))
     fan_owners = np.repeat(np.arange(len(sizes)), np.maximum(sizes - 2, 0))
@@ -110,18 +112,20 @@ def _read_msh(data: bytes) -> Submesh:
     table = np.frombuffer(data, "<f4", int(ends[2]), _MSH_HEADER).astype(np.float64)
     rows = np.frombuffer(data, "<i4", lengths[3], _MSH_HEADER + 4 * int(ends[2])).astype(np.int64).reshape(-1, 3)
     places = table[ends[1] : ends[2]].reshape(-1, 2) * (1.0, -1.0) + (0.0, 1.0) if uv == points else None
-    return Submesh(table[: ends[0]].reshape(-1, 3), rows, places)
+    turns = table[ends[0] : ends[1]].reshape(-1, 3) if normals == points else None
+    return Submesh(table[: ends[0]].reshape(-1, 3), rows, places, normals=turns)
 
 
 # ---- OBJ ---------------------------------------------------------------------------------------------------------------------------
 
 
 class _Obj(NamedTuple):
-    """The lines of a file by their first word, and the faces of its first object, each with the number of points and places before it."""
+    """The lines of a file by their first word, and the faces of its first object, each with the number of such lines before it."""
 
     points: list[bytes]
     places: list[bytes]
-    faces: list[tuple[bytes, int, int]]
+    normals: list[bytes]
+    faces: list[tuple[bytes, int, int, int]]
     has_more: bool = False
     """Whether there are faces of other objects."""
 
@@ -131,21 +135,28 @@ def _read_obj(data: bytes) -> Submesh:
     try:
         points = _table(lines.points, _SOLID)
         uv = _table(lines.places, 2)
-        sizes, corners, places = _corners(lines)
+        shading = _table(lines.normals, _SOLID)
+        sizes, fields = _corners(lines)
     except (ValueError, IndexError) as error:
         raise Unreadable(f"a line is not understood ({error})") from error
+    corners = fields[:, 0]
     if corners.size and (corners.min() < 0 or corners.max() >= len(points)):
         raise Unreadable("a face has a point that does not exist")
     if not len(sizes):
         raise Unreadable("it has no triangles")
     rows, _ = cut(points.astype(np.float32), sizes, corners)
-    if not places.size or places.min() < 0 or not len(uv) or places.max() >= len(uv):  # then MuJoCo has none for the whole mesh
-        return Submesh(points, corners[rows])
-    return Submesh(points, corners[rows], uv, None, places[rows])
+    places, turns = _rows_of(uv, fields[:, 1], rows), _rows_of(shading, fields[:, 2], rows)
+    return Submesh(points, corners[rows], None if places is None else uv, None, places, None if turns is None else shading, turns)
+
+
+def _rows_of(table: NDArray[np.float64], column: NDArray[np.int64], rows: NDArray[np.intp]) -> NDArray[np.int64] | None:
+    """The rows of a table for each triangle; None where a corner has none: then MuJoCo has none for the whole mesh."""
+    is_whole = column.size and column.min() >= 0 and column.max() < len(table)
+    return column[rows] if is_whole else None
 
 
 def _lines_of(data: bytes) -> _Obj:
-    found = _Obj([], [], [])
+    found = _Obj([], [], [], [])
     is_first, has_more = True, False
     for line in data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n"):
         word, _, rest = line.lstrip().replace(b"\t", b" ", 1).partition(b" ")
@@ -153,10 +164,12 @@ def _lines_of(data: bytes) -> _Obj:
             found.points.append(rest)
         elif word == b"vt":
             found.places.append(rest)
+        elif word == b"vn":
+            found.normals.append(rest)
         elif word == b"f" and len(rest.split(None, _SOLID)) >= _SOLID:
             has_more = has_more or not is_first
             if is_first:
-                found.faces.append((rest, len(found.points), len(found.places)))
+                found.faces.append((rest, len(found.points), len(found.places), len(found.normals)))
         elif word in (b"o", b"g") and found.faces:
             is_first = False
     return found._replace(has_more=has_more)
@@ -164,7 +177,7 @@ def _lines_of(data: bytes) -> _Obj:
 
 def faces_of_first_object(data: bytes) -> list[bytes]:
     """The corners of each face that MuJoCo reads from an OBJ file, as written."""
-    return [row for row, _, _ in _lines_of(data).faces]
+    return [row for row, *_ in _lines_of(data).faces]
 
 
 def _table(rows: list[bytes], width: int) -> NDArray[np.float64]:
@@ -183,24 +196,24 @@ def _table(rows: list[bytes], width: int) -> NDArray[np.float64]:
         return np.asarray(numbers.astype(np.float32).astype(np.float64))
 
 
-def _corners(lines: _Obj) -> tuple[NDArray[np.intp], NDArray[np.int64], NDArray[np.int64]]:
-    """The number of corners of each face, their points, and their places, -1 for none."""
-    words = [row.split() for row, _, _ in lines.faces]
+def _corners(lines: _Obj) -> tuple[NDArray[np.intp], NDArray[np.int64]]:
+    """The number of corners of each face, and for each corner the rows of its point, its place and its normal, -1 for none."""
+    words = [row.split() for row, *_ in lines.faces]
     sizes = np.array([len(row) for row in words], dtype=np.intp)
     if not len(sizes):
-        return sizes, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-    text = b" ".join([row for row, _, _ in lines.faces])
+        return sizes, np.zeros((0, 3), dtype=np.int64)
+    text = b" ".join([row for row, *_ in lines.faces])
     strokes = text.count(b"/")
     if b"-" not in text and b"//" not in text and strokes % max(int(sizes.sum()), 1) == 0 and _are_alike(words, strokes, sizes):
         numbers = numbers_in(text.replace(b"/", b" "), np.int64).reshape(int(sizes.sum()), -1) - 1
-        return sizes, numbers[:, 0], numbers[:, 1] if numbers.shape[1] > 1 else np.full(len(numbers), -1)
-    points, places = [], []
-    for row, (_, before, places_before) in zip(words, lines.faces, strict=True):
+        return sizes, np.hstack([numbers[:, :3], np.full((len(numbers), 3 - min(numbers.shape[1], 3)), -1)])
+    found = []
+    for row, (_, *before) in zip(words, lines.faces, strict=True):
         for corner in row:
-            fields = corner.split(b"/")
-            points.append(_index(fields[0], before))
-            places.append(_index(fields[1], places_before) if len(fields) > 1 and fields[1] else -1)
-    return sizes, np.array(points, dtype=np.int64), np.array(places, dtype=np.int64)
+            point, place, normal = [*corner.split(b"/"), b"", b""][:3]
+            others = ((place, before[1]), (normal, before[2]))
+            found.append((_index(point, before[0]), *(_index(text, at) if text else -1 for text, at in others)))
+    return sizes, np.array(found, dtype=np.int64)
 
 
 def _are_alike(words: list[list[bytes]], strokes: int, sizes: NDArray[np.intp]) -> bool:

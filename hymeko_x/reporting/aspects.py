@@ -7,6 +7,7 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
+from hymeko_x.ir.parts import MESH_POINTS
 
 if TYPE_CHECKING:
     from hymeko_x.compare.ledger import Loss
@@ -32,8 +33,6 @@ class Aspect(Enum):
 _FORMS = ("chain", "frame")
 _COMPUTED = ("mass", "density")
 """Of a shape: from these an engine computes the inertia of its body, which is written out."""
-_POINTS = ("vertices", "faces", "texcoords", "texfaces")
-"""Of a mesh: they go to a file, or come from one."""
 _DRAWN = ("material", "texture", "layer", "subset", "light")
 _DRAWN_FIELDS = ("rgba", "width")
 _DRAWN_EXTRAS = re.compile(r"@(rgba|group|material|type)$")
@@ -59,7 +58,7 @@ def aspect_of(loss: Loss) -> Aspect:
         return Aspect.NAME
     if last in _DRAWN_FIELDS and kind in ("shape", "tendon"):
         return Aspect.APPEARANCE
-    is_computed = (kind == "shape" and field in _COMPUTED) or (kind == "mesh" and field in _POINTS)
+    is_computed = (kind == "shape" and field in _COMPUTED) or (kind == "mesh" and field in MESH_POINTS)
     return Aspect.FORM if is_computed else Aspect.PHYSICS
 
 

@@ -60,10 +60,11 @@ def _line(key: Id, part: object, contents: PackageFiles) -> Iterator[tuple[str, 
 
 
 def _digest_of_points(mesh: Mesh) -> str:
-    """The digest of points, triangles and texture coordinates in single precision."""
+    """The digest of points, triangles, texture coordinates, and normals if there are some, in single precision."""
     import numpy as np
 
-    numbers = (np.asarray(rows, np.float32).tobytes() for rows in (mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces))
+    tables = (mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces, *((mesh.normals, mesh.normalfaces) if mesh.normals else ()))
+    numbers = (np.asarray(rows, np.float32).tobytes() for rows in tables)
     return sha256(b"|".join(numbers)).hexdigest()
 
 

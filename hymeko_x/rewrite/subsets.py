@@ -80,7 +80,7 @@ class _Splitting(Struct):
     meshes: dict[Id, Mesh] = field(default_factory=dict)
     edges: dict[Id, RobotEdge] = field(default_factory=dict)
     known: dict[tuple[Id, tuple[int, ...]], Id] = field(default_factory=dict)
-    tables: dict[Id, list[_Table]] = field(default_factory=dict)
+    tables: dict[Id, list[_Table | None]] = field(default_factory=dict)
 
     def show(self, view: ShapeView, mesh: Id, pieces: list[_Piece]) -> None:
         """A shape for each piece. The first one is the shape itself, unless that collides and stays whole."""
@@ -103,23 +103,23 @@ class _Splitting(Struct):
         return self.known[mesh, faces]
 
     def _cut(self, key: Id, faces: tuple[int, ...]) -> Mesh:
-        """Some triangles of a mesh, with the points and places that they are of."""
+        """Some triangles of a mesh, with the points, texture coordinates and normals that they are of."""
         mesh = self.mechanism.vertex(key, Mesh)
         if key not in self.tables:
             self.tables[key] = _tables(mesh)
-        points, *places = [_of(rows, table, faces) for rows, table in self.tables[key]]
-        texcoords, texfaces = places[0] if places else ((), ())
-        return Mesh(None, mesh.scale, None, *points, texcoords, texfaces)
+        points, places, normals = [((), ()) if table is None else _of(*table, faces) for table in self.tables[key]]
+        return Mesh(None, mesh.scale, None, *points, *places, *normals)
 
 
-def _tables(mesh: Mesh) -> list[_Table]:
-    """The points of a mesh, and its places in an image where it has sound ones."""
+def _tables(mesh: Mesh) -> list[_Table | None]:
+    """The points of a mesh, and its texture coordinates and normals, each None where it has no sound ones."""
     import numpy as np
 
-    found = [(np.asarray(mesh.faces).reshape(-1, 3), np.asarray(mesh.vertices).reshape(-1, 3))]
-    rows = mesh.texfaces or mesh.faces
-    if len(rows) == len(mesh.faces) and _are_rows(rows, mesh.texcoords, 2):
-        found.append((np.asarray(rows).reshape(-1, 3), np.asarray(mesh.texcoords).reshape(-1, 2)))
+    found: list[_Table | None] = [(np.asarray(mesh.faces).reshape(-1, 3), np.asarray(mesh.vertices).reshape(-1, 3))]
+    for rows, numbers, width in ((mesh.texfaces, mesh.texcoords, 2), (mesh.normalfaces, mesh.normals, 3)):
+        at = rows or mesh.faces
+        is_sound = len(at) == len(mesh.faces) and _are_rows(at, numbers, width)
+        found.append((np.asarray(at).reshape(-1, 3), np.asarray(numbers).reshape(-1, width)) if is_sound else None)
     return found
 
 

@@ -10,6 +10,7 @@ import pytest
 import trimesh
 from PIL import Image
 
+from hymeko_x.ir.parts import Mesh
 from hymeko_x.meshes.measures import extents, thickened, volume_of_sheets
 from hymeko_x.meshes.obj import obj_bytes
 from hymeko_x.meshes.reader import inline_part, merged, read_parts, read_whole
@@ -233,7 +234,7 @@ def test_written_stl_and_obj_read_back_as_the_same_surface() -> None:
 
 
 def test_a_flat_mesh_has_no_volume_until_it_is_thickened() -> None:
-    flat = inline_part((0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0), (0, 1, 2, 0, 2, 3))
+    flat = inline_part(Mesh(vertices=(0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0), faces=(0, 1, 2, 0, 2, 3)))
     assert (volume_of_sheets(flat), extents(flat)[0]) == (0.0, 0.0)
     solid = thickened(flat, 1e-3)
     assert extents(solid)[0] == pytest.approx(1e-3 * extents(flat)[2])
@@ -261,5 +262,5 @@ def triangles(part: Submesh, digits: int = 5) -> list[list[list[float]]]:
 def test_points_that_are_equal_become_one_in_the_order_of_the_file_whatever_the_sign_of_their_zeros() -> None:
     dice = np.random.default_rng(0)
     corners = dice.integers(-2, 3, (500, 3, 3)) * dice.choice([-1.0, 1.0], (500, 3, 3))
-    part = read_whole(stl_bytes(inline_part(tuple(corners.ravel()), tuple(range(1500)))), ".stl", nothing_else)
+    part = read_whole(stl_bytes(inline_part(Mesh(vertices=tuple(corners.ravel()), faces=tuple(range(1500))))), ".stl", nothing_else)
     assert list(map(tuple, part.points.tolist())) == list(dict.fromkeys(map(tuple, (corners.reshape(-1, 3) + 0.0).tolist())))

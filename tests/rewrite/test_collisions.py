@@ -48,7 +48,7 @@ def test_a_concave_mesh_is_replaced_by_its_hull_once_for_all_its_shapes(robot: P
     assert [mesh.name or mesh.uri for _, mesh in found] == ["tetra.obj", "angle_hull", "angle_hull"]
     assert sorted(view.pose.xyz[2] for view, _ in found) == [0.0, 0.0, 1.0]
     hull = found[1][1]
-    assert (max(hull.vertices), is_convex(inline_part(hull.vertices, hull.faces))) == (1.0, True)
+    assert (max(hull.vertices), is_convex(inline_part(hull))) == (1.0, True)
     assert [item.message for item in result.report] == ["--collision hull: 1 concave collision mesh replaced by convex hulls: 'angle'"]
     assert (tmp_path / "shapes" / "angle_hull.obj").exists()
     again = hx.convert(tmp_path / "out.urdf", tmp_path / "again.urdf", collision="hull")
@@ -78,7 +78,7 @@ def test_a_mesh_in_convex_parts_keeps_its_volume(robot: Path, tmp_path: Path) ->
     result = hx.convert(robot, tmp_path / "out.urdf", collision="decompose")
     parts = [mesh for _, mesh in colliding(result.mechanism) if (mesh.name or "").startswith("angle_part")]
     assert len(parts) == 4
-    assert all(is_convex(inline_part(mesh.vertices, mesh.faces)) for mesh in parts)
+    assert all(is_convex(inline_part(mesh)) for mesh in parts)
     assert [item.message for item in result.report] == [
         "--collision decompose: 1 concave collision mesh replaced by 2 convex parts: 'angle' 2 (86% of its hull)"
     ]

@@ -128,23 +128,25 @@ def _pack_meshes(run: _Packing) -> None:
 
 def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
     """Data that the mechanism holds stays in the text if there is little of it; else, or if MuJoCo would refuse it, it becomes a file."""
-    from hymeko_x.backends.mjcf.meshes import mesh_file, stays_inline, without_points
+    from hymeko_x.backends.mjcf.meshes import mesh_file, stays_inline
     from hymeko_x.meshes.reader import inline_part
     from hymeko_x.meshes.submesh import Unreadable
 
     solid = any(view.shape.role is not Role.VISUAL for view in users)
     try:
-        part = inline_part(mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces)
+        part = inline_part(mesh)
         _check_surface(part)
         reason = _refusal(part, ".obj", b"", solid=solid)
         if reason is not None:
             _report_converted(run, key, reason)
-            _write_mesh(run, key, without_points(mesh), part, key.name, solid=solid)
-        elif stays_inline(part) or (run.shelf.mode == "reference" and part.uv is None):  # then the main file stands alone
+            _write_mesh(run, key, mesh.without_points(), part, key.name, solid=solid)
+        elif stays_inline(part) or (
+            run.shelf.mode == "reference" and part.uv is None and part.normals is None
+        ):  # then the main file stands alone
             _add_mesh(run, key, mesh, part)
         else:
             suffix, data = mesh_file(part)
-            _add_mesh(run, key, replace(without_points(mesh), uri=run.shelf.place(_MESHES, key.name, suffix, data)), part)
+            _add_mesh(run, key, replace(mesh.without_points(), uri=run.shelf.place(_MESHES, key.name, suffix, data)), part)
     except Unreadable as error:
         _leave_out(run, key, users, codes.ASSET_UNREADABLE, f"its data cannot be used: {error}")
 

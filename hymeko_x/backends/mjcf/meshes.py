@@ -28,15 +28,15 @@ _MOST_POINTS = 200
 
 
 def stays_inline(part: Submesh) -> bool:
-    """Whether a mesh is small enough for the text of a model, which has no texture coordinates from the lower left."""
-    return part.uv is None and len(part.points) <= _MOST_POINTS
+    """Whether a mesh is small enough for the text of a model, which has no texture coordinates from the lower left, and no normals."""
+    return part.uv is None and part.normals is None and len(part.points) <= _MOST_POINTS
 
 
 def mesh_file(part: Submesh) -> tuple[str, bytes]:
     """The suffix and the content of the file: STL where its points come in the order of the triangles, MSH without triangles, else OBJ."""
     if not len(part.faces):
         return ".msh", msh_bytes(part)
-    if part.uv is None and len(part.faces) <= MOST_STL_FACES and _is_in_order_of_stl(part):
+    if part.uv is None and part.normals is None and len(part.faces) <= MOST_STL_FACES and _is_in_order_of_stl(part):
         return ".stl", stl_bytes(part)
     return ".obj", obj_bytes(part)
 
@@ -67,15 +67,10 @@ def with_points_as_files(mechanism: Mechanism, shelf: Shelf) -> Mechanism:
         if mesh.uri is not None or not mesh.vertices:
             continue
         try:
-            part = inline_part(mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces)
+            part = inline_part(mesh)
         except Unreadable:
             continue
         if not stays_inline(part):
             suffix, data = mesh_file(part)
-            changed[key] = without_points(replace(mesh, uri=shelf.place(FOLDER, key.name, suffix, data)))
+            changed[key] = replace(mesh.without_points(), uri=shelf.place(FOLDER, key.name, suffix, data))
     return mechanism.replace(vertices=changed)
-
-
-def without_points(mesh: Mesh) -> Mesh:
-    """The mesh without points of its own."""
-    return replace(mesh, vertices=(), faces=(), texcoords=(), texfaces=())

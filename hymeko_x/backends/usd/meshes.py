@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from hymeko_x.meshes.submesh import Submesh
 
 _ST = "primvars:st"
+_NORMALS = "primvars:normals"
 
 
 # ---- meshes --------------------------------------------------------------------------------------------------------------------
@@ -53,10 +54,14 @@ def write_mesh_shape(sheet: UsdSheet, spec: Any, view: ShapeView, users: dict[Id
 
 def _write_attributes(spec: Prim, mechanism: Mechanism, shape: Id, mesh: Mesh, surface: Triangles) -> None:
     """Normals and texture coordinates of a mesh, as far as the prim of the shape gets them."""
-    if has_own(mechanism, shape, words.NORMALS):
+    normals = normals_of(mesh)
+    if normals is not None and has_own(mechanism, shape, words.CORNER_NORMALS):
+        _write_corners(spec, _NORMALS, T.Normal3fArray, Vt.Vec3fArray.FromNumpy(normals[0]), normals[1])
+    elif normals is None and has_own(mechanism, shape, words.NORMALS):
         write_normals(spec, surface)
-    if has_own(mechanism, shape, words.TEXCOORDS):
-        _write_places(spec, mesh)
+    places = places_of(mesh) if has_own(mechanism, shape, words.TEXCOORDS) else None
+    if places is not None:
+        _write_corners(spec, _ST, T.TexCoord2fArray, Vt.Vec2fArray.FromNumpy(places[0]), places[1])
 
 
 def has_own(mechanism: Mechanism, shape: Id, notation: Notation[bool]) -> bool:
@@ -101,14 +106,11 @@ def write_normals(prim: Prim, surface: Triangles) -> None:
     prim.interpolation["normals"] = "uniform"
 
 
-def _write_places(prim: Prim, mesh: Mesh) -> None:
-    """Where the corners of the triangles are in the image of the material."""
-    found = places_of(mesh)
-    if found is None:
-        return
-    put(prim, _ST, T.TexCoord2fArray, Vt.Vec2fArray.FromNumpy(found[0]))
-    put(prim, f"{_ST}:indices", T.IntArray, Vt.IntArray.FromNumpy(found[1]))
-    prim.interpolation[_ST] = "faceVarying"
+def _write_corners(prim: Prim, name: str, kind: Any, table: Any, rows: NDArray[np.int32]) -> None:
+    """A table of values, and its row for each corner of the triangles."""
+    put(prim, name, kind, table)
+    put(prim, f"{name}:indices", T.IntArray, Vt.IntArray.FromNumpy(rows))
+    prim.interpolation[name] = "faceVarying"
 
 
 def write_subsets(sheet: UsdSheet, spec: Prim, view: ShapeView) -> None:
@@ -131,19 +133,26 @@ def write_subsets(sheet: UsdSheet, spec: Prim, view: ShapeView) -> None:
 
 def places_of(mesh: Mesh) -> Triangles | None:
     """The places of a mesh in its image (n x 2, single precision) and the row of each corner; None where they are none or broken."""
-    table = _mapped(mesh.loaded) if isinstance(mesh, LoadedMesh) else _listed_places(mesh)
-    return None if table is None else _in_single(*table)
+    if isinstance(mesh, LoadedMesh):
+        return _loaded(mesh.loaded.uv, mesh.loaded.corners, mesh.loaded)
+    return _of_lists(mesh.texcoords, mesh.texfaces or mesh.faces, 2, mesh)
 
 
-def _mapped(part: Submesh) -> Triangles | None:
-    return None if part.uv is None else (part.uv, (part.faces if part.corners is None else part.corners).ravel())
+def normals_of(mesh: Mesh) -> Triangles | None:
+    """The normals of a mesh (n x 3, single precision) and the row of each corner; None where they are none or broken."""
+    if isinstance(mesh, LoadedMesh):
+        return _loaded(mesh.loaded.normals, mesh.loaded.normal_corners, mesh.loaded)
+    return _of_lists(mesh.normals, mesh.normalfaces or mesh.faces, 3, mesh)
 
 
-def _listed_places(mesh: Mesh) -> Triangles | None:
-    rows = mesh.texfaces or mesh.faces
-    if not mesh.texcoords or len(mesh.texcoords) % 2 or len(rows) != len(mesh.faces):
+def _loaded(table: NDArray[Any] | None, corners: NDArray[Any] | None, part: Submesh) -> Triangles | None:
+    return None if table is None else _in_single(table, (part.faces if corners is None else corners).ravel())
+
+
+def _of_lists(numbers: tuple[float, ...], rows: tuple[int, ...], width: int, mesh: Mesh) -> Triangles | None:
+    if not numbers or len(numbers) % width or len(rows) != len(mesh.faces):
         return None
-    return np.fromiter(mesh.texcoords, np.float64, len(mesh.texcoords)).reshape(-1, 2), np.fromiter(rows, np.int64, len(rows))
+    return _in_single(np.fromiter(numbers, np.float64, len(numbers)).reshape(-1, width), np.fromiter(rows, np.int64, len(rows)))
 
 
 def surface_of(mesh: Mesh) -> Triangles | None:

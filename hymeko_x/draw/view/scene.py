@@ -145,7 +145,7 @@ def _submeshes(mechanism: Mechanism, view: ShapeView, files: Files) -> tuple[Sub
     if mesh is None:
         return ()
     if mesh.vertices and mesh.uri is None:
-        return (inline_part(mesh.vertices, mesh.faces),) if mesh.faces else ()
+        return (inline_part(mesh),) if mesh.faces else ()
     found = None if mesh.uri is None else read_file(files, mesh.uri)
     with suppress(Unreadable):
         if mesh.uri is not None and found is not None:

@@ -68,6 +68,7 @@ _LAW = Word("law", "law", "text")
 _DOMAIN = Word("domain", "domain", "text")
 _POINTS = (Word("vertices", "vertices", "numbers", "length"), _FACES)
 _TEXTURING = (Word("texcoords", "texcoords", "numbers"), Word("texfaces", "texfaces", "integers"))
+_SHADING = (Word("normals", "normals", "numbers"), Word("normalfaces", "normalfaces", "integers"))
 _SURFACE = _numbers("specular shininess reflectance emission metallic roughness")
 
 PARTS: Mapping[str, PartWords] = MappingProxyType(
@@ -75,7 +76,7 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
         "frame": PartWords(parts.Frame, (Word("size", "size", "numbers", "length"),)),
         "material": PartWords(parts.Material, (_NAME, _RGBA, *_SURFACE)),
         "texture": PartWords(parts.Texture, (_FILE, _NAME)),
-        "mesh": PartWords(parts.Mesh, (_FILE, _SCALE, _NAME, *_POINTS, *_TEXTURING)),
+        "mesh": PartWords(parts.Mesh, (_FILE, _SCALE, _NAME, *_POINTS, *_TEXTURING, *_SHADING)),
         "actuator": PartWords(parts.Actuator, (_TYPE,), open=True),
         "sensor": PartWords(parts.Sensor, (_TYPE, _number("rate")), open=True),
         "camera": PartWords(parts.Camera, (_number("fovy", "angle"), Word("resolution", "resolution", "pixels")), open=True),

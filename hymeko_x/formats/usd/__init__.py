@@ -29,6 +29,8 @@ PHYSX = words("usd.physx")
 """The notation of a joint with the names of its values that PhysX' schema has too, in a stage that is not neutral."""
 NORMALS = flag("usd.normals", "faces")
 """The notation of a mesh shape whose prim has the normal of each triangle as computed from its points."""
+CORNER_NORMALS = flag("usd.corner_normals", "corners")
+"""The notation of a mesh shape whose prim has normals by corner with indices, in the form that the writer uses."""
 TEXCOORDS = flag("usd.texcoords", "corners")
 """The notation of a mesh shape whose prim has texture coordinates by corner with indices, in the form that the writer uses."""
 MATERIAL_BIND = "materialBind"

@@ -70,13 +70,15 @@ class _Checker:
         if key.kind != "mesh":
             return
         corners, points = len(item.faces), len(item.vertices)
-        for name, size in (("vertices", 3), ("faces", 3), ("texcoords", 2)):
+        for name, size in (("vertices", 3), ("faces", 3), ("texcoords", 2), ("normals", 3)):
             if len(getattr(item, name)) % size:
                 self._fail(codes.BAD_VALUE, f"{path}.{name}", f"{len(getattr(item, name))} numbers are no multiple of {size}", key)
         if corners and not (min(item.faces) >= 0 and max(item.faces) < points // 3):
             self._fail(codes.BAD_VALUE, f"{path}.faces", f"a corner is none of the {points // 3} points", key)
-        if item.texfaces and len(item.texfaces) != corners:
-            self._fail(codes.BAD_VALUE, f"{path}.texfaces", f"expected {corners} numbers as in 'faces', found {len(item.texfaces)}", key)
+        for name in ("texfaces", "normalfaces"):
+            found = len(getattr(item, name))
+            if found not in (0, corners):
+                self._fail(codes.BAD_VALUE, f"{path}.{name}", f"expected {corners} numbers as in 'faces', found {found}", key)
 
     def _finite(self, item: Struct, path: str, key: Id) -> None:
         found = endless_in(item)

@@ -1,4 +1,4 @@
-"""Mesh prims: triangles in metres, normals, texture coordinates (the primvar ``st``), and subsets with a material of their own."""
+"""Mesh prims: triangles in metres, texture coordinates (the primvar ``st``), normals, and subsets with a material of their own."""
 
 from __future__ import annotations
 
@@ -48,7 +48,8 @@ def read_mesh(prim: Prim, builder: UsdBuilder, scale: Vec3) -> Id | None:
         builder.mark_read(prim, "subdivisionScheme")
     if (sizes == 3).all():
         builder.mark_read(prim, "faceVertexCounts", "faceVertexIndices")
-    return _shared_mesh(prim, vertices, faces, read_places(prim, sizes, corners), scale, builder)
+    tables = (*read_places(prim, sizes, corners), *_read_normals(prim, sizes, corners))
+    return _shared_mesh(prim, vertices, faces, tables, scale, builder)
 
 
 def _damage(vertices: NDArray[Any], sizes: NDArray[Any], corners: NDArray[Any]) -> str:
@@ -90,68 +91,78 @@ def read_normals(prim: Prim, builder: UsdBuilder) -> bool:
     return True
 
 
-def _shared_mesh(
-    prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], places: TextureCoordinates, scale: Vec3, builder: UsdBuilder
-) -> Id:
+def _shared_mesh(prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], tables: tuple[Any, ...], scale: Vec3, builder: UsdBuilder) -> Id:
+    """``tables`` are the texture coordinates with their rows, and the normals with theirs."""
     from hymeko_x.meshes.submesh import indices
 
     about = tuple(f"{factor:.12g}" for factor in scale)  # computed from the prim's ancestors: its last bits are rounding errors
-    authored = repr((about, places) if places[0] else about)
+    authored = repr((about, tables) if any(tables) else about)
     content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + authored.encode()).hexdigest()
     known = builder.meshes.get(content)
     if known is not None:
         return known
     key = builder.new_id(prim, "mesh", prim.name)
     builder.meshes[content] = key
-    builder.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), indices(faces), *places)
+    builder.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), indices(faces), *tables)
     return key
 
 
-# ---- texture coordinates -----------------------------------------------------------------------------------------------------------
+# ---- texture coordinates and normals ---------------------------------------------------------------------------------------------
 
-TextureCoordinates = tuple[tuple[float, ...], tuple[int, ...]]
-"""TextureCoordinates in an image (flat, 2 numbers each), and their row at each corner of the triangles."""
+CornerTable = tuple[tuple[float, ...], tuple[int, ...]]
+"""Texture coordinates in an image (flat, 2 numbers each) or normals (3 each), and their row at each corner of the triangles."""
 
-_ST = "primvars:st"
-_ST_TYPES = ("texCoord2f[]", "float2[]")
+ST = "primvars:st"
+NORMALS = "primvars:normals"
+_TYPES = {ST: ("texCoord2f[]", "float2[]"), NORMALS: ("normal3f[]", "float3[]", "vector3f[]")}
 _BY_CORNER = ("faceVarying", "vertex", "varying")
 _OF_PLACES = frozenset(("typeName", "variability", "custom", "default", "interpolation"))
 
 
-def read_places(prim: Prim, sizes: NDArray[Any], corners: NDArray[Any]) -> TextureCoordinates:
+def read_places(prim: Prim, sizes: NDArray[Any], corners: NDArray[Any]) -> CornerTable:
     """The places of a mesh in an image, and for each corner of its triangles the row of its place; nothing where it has none."""
-    authored = prim.value(_ST)
-    if authored is None or prim.types[_ST] not in _ST_TYPES or prim.is_animated(_ST):
+    return _read_table(prim, ST, _TYPES[ST], sizes, corners)
+
+
+def _read_normals(prim: Prim, sizes: NDArray[Any], corners: NDArray[Any]) -> CornerTable:
+    """The normals of the corners, likewise. The primvar counts where there is one too."""
+    name = NORMALS if prim.value(NORMALS) is not None else "normals"
+    return _read_table(prim, name, _TYPES[NORMALS], sizes, corners)
+
+
+def _read_table(prim: Prim, name: str, types: tuple[str, ...], sizes: NDArray[Any], corners: NDArray[Any]) -> CornerTable:
+    authored = prim.value(name)
+    if authored is None or prim.types[name] not in types or prim.is_animated(name):
         return (), ()
     import numpy as np
 
     from hymeko_x.meshes.submesh import fans
 
-    places, rows = np.asarray(authored, dtype=np.float64).reshape(-1, 2), prim.value(f"{_ST}:indices")
-    spread = prim.spec.attributes[_ST].GetInfo("interpolation")
+    table, rows = np.asarray(authored, dtype=np.float64), prim.value(f"{name}:indices")
+    spread = prim.spec.attributes[name].GetInfo("interpolation")
     index = np.arange(len(corners)) if spread == "faceVarying" else corners
     if rows is not None:
         rows = np.asarray(rows, dtype=np.int64)
     is_broken = spread not in _BY_CORNER or (rows is not None and index.size and index.max() >= len(rows))
-    if is_broken:
+    if is_broken or not len(table):
         return (), ()
     index = index if rows is None else rows[index]
-    if not np.isfinite(places).all() or (index.size and (index.min() < 0 or index.max() >= len(places))):
+    if not np.isfinite(table).all() or (index.size and (index.min() < 0 or index.max() >= len(table))):
         return (), ()
-    return tuple(places.ravel().tolist()), tuple(fans(sizes, index).ravel().tolist())
+    return tuple(table.ravel().tolist()), tuple(fans(sizes, index).ravel().tolist())
 
 
-def read_st_as_written(prim: Prim, builder: UsdBuilder) -> bool:
-    """Whether the texture coordinates of a mesh are in the form that the writer uses, and need not be kept."""
-    if prim.value(_ST) is None or prim.value(f"{_ST}:indices") is None or "faceVertexCounts" not in builder.read_names.get(prim.path, ()):
+def is_table_as_written(prim: Prim, name: str, builder: UsdBuilder) -> bool:
+    """Whether the texture coordinates or normals of a mesh are in the form that the writer uses, and need not be kept."""
+    if prim.value(name) is None or prim.value(f"{name}:indices") is None or "faceVertexCounts" not in builder.read_names.get(prim.path, ()):
         return False
-    specs = [prim.spec.attributes[name] for name in (_ST, f"{_ST}:indices")]
+    specs = [prim.spec.attributes[each] for each in (name, f"{name}:indices")]
     is_plain = set(specs[0].ListInfoKeys()) <= _OF_PLACES and set(specs[1].ListInfoKeys()) <= _OF_PLACES
-    if not is_plain or specs[0].GetInfo("interpolation") != "faceVarying" or prim.types[_ST] != _ST_TYPES[0]:
+    if not is_plain or specs[0].GetInfo("interpolation") != "faceVarying" or prim.types[name] != _TYPES[name][0]:
         return False
-    if len(prim.value(f"{_ST}:indices")) != len(prim.value("faceVertexIndices")) or any(map(prim.is_animated, (_ST, f"{_ST}:indices"))):
+    if len(prim.value(f"{name}:indices")) != len(prim.value("faceVertexIndices")) or any(map(prim.is_animated, (name, f"{name}:indices"))):
         return False
-    builder.mark_read(prim, _ST, f"{_ST}:indices")
+    builder.mark_read(prim, name, f"{name}:indices")
     return True
 
 

@@ -44,8 +44,9 @@ _CLASSES = MappingProxyType(
 _TRIPLES = frozenset(kind for kind, found in _CLASSES.items() if found in (Vt.Vec3fArray, Vt.Vec3dArray, Vt.Vec3hArray))
 _TYPES_OF = MappingProxyType(
     {
-        **dict.fromkeys(("points", "extent", "normals", "primvars:displayColor"), _TRIPLES),
-        **dict.fromkeys(("faceVertexCounts", "faceVertexIndices", "indices", "primvars:st:indices"), frozenset(("int[]",))),
+        **dict.fromkeys(("points", "extent", "normals", "primvars:normals", "primvars:displayColor"), _TRIPLES),
+        **dict.fromkeys(("faceVertexCounts", "faceVertexIndices", "indices"), frozenset(("int[]",))),
+        **dict.fromkeys(("primvars:st:indices", "primvars:normals:indices"), frozenset(("int[]",))),
         "primvars:displayOpacity": frozenset(("float[]", "double[]", "half[]")),
         "xformOpOrder": frozenset(("token[]",)),
     }

@@ -10,7 +10,7 @@ from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.bodies import ReadShape, body_at
 from hymeko_x.frontends.usd.contacts import friction_of
 from hymeko_x.frontends.usd.materials import bound_material
-from hymeko_x.frontends.usd.meshes import read_mesh, read_normals, read_st_as_written, read_subsets
+from hymeko_x.frontends.usd.meshes import NORMALS, ST, is_table_as_written, read_mesh, read_normals, read_subsets
 from hymeko_x.frontends.usd.transforms import numbers_of
 from hymeko_x.ir.mechanism import WORLD, Id, shape_edge
 from hymeko_x.ir.parts import MeshShape, Role, Shape, World
@@ -62,8 +62,9 @@ def read_shape(prim: Prim, builder: UsdBuilder) -> tuple[Id, ReadShape] | None:
         builder.note(key, gprims.GPRIM, authored)
     if prim.kind == "Mesh" and read_normals(prim, builder):
         builder.note(key, words.NORMALS, True)
-    if mesh is not None and read_st_as_written(prim, builder):
-        builder.note(key, words.TEXCOORDS, True)
+    for name, notation in ((ST, words.TEXCOORDS), (NORMALS, words.CORNER_NORMALS)) if mesh is not None else ():
+        if is_table_as_written(prim, name, builder):
+            builder.note(key, notation, True)
     builder.edges[key] = shape_edge(shape, owner, pose, mesh, bound_material(prim, builder))
     if mesh is not None:
         read_subsets(prim, key, builder)
