@@ -101,7 +101,7 @@ def _name(line: bytes, word: bytes) -> str:
     return line.removeprefix(word).strip().decode("utf-8", "replace")
 
 
-def _words(rows: list[bytes]) -> tuple[NDArray[np.uint8], NDArray[np.intp], NDArray[np.intp]]:
+def words_of(rows: list[bytes]) -> tuple[NDArray[np.uint8], NDArray[np.intp], NDArray[np.intp]]:
     """The rows as one text, the places in it where words begin, and the number of words of each row."""
     text = np.frombuffer(b" " + b" ".join(rows) + b" ", dtype=np.uint8)
     is_blank = text <= ord(" ")
@@ -114,7 +114,7 @@ def _rows(rows: list[bytes], widths: tuple[int, int]) -> NDArray[np.float64] | N
     """As many numbers of each row as the lesser width; None where rows have other widths, or several."""
     if not rows:
         return None
-    text, _, counts = _words(rows)
+    text, _, counts = words_of(rows)
     if counts[0] not in widths or (counts != counts[0]).any():
         return None
     return numbers_in(text.tobytes()).reshape(len(rows), int(counts[0]))[:, : widths[0]]
@@ -190,7 +190,7 @@ def _corners(rows: list[bytes]) -> tuple[NDArray[np.intp], NDArray[np.int64], bo
 
     Raises: ValueError where there is anything but numbers.
     """
-    text, starts, sizes = _words(rows)
+    text, starts, sizes = words_of(rows)
     strokes = np.diff(np.searchsorted(np.flatnonzero(text == ord("/")), np.append(starts, len(text))))
     if (strokes != strokes[:1]).any():
         return None

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from hymeko_x.meshes.numerals import numbers_in
+from hymeko_x.meshes.obj import words_of
 from hymeko_x.meshes.polygons import MOST_CORNERS, cut, leaves_polygons_out
 from hymeko_x.meshes.stl import read_stl
 from hymeko_x.meshes.submesh import MOST_FACES, Submesh, Unreadable, fans
@@ -198,28 +199,21 @@ def _table(rows: list[bytes], width: int) -> NDArray[np.float64]:
 
 def _corners(lines: _Obj) -> tuple[NDArray[np.intp], NDArray[np.int64]]:
     """The number of corners of each face, and for each corner the rows of its point, its place and its normal, -1 for none."""
-    words = [row.split() for row, *_ in lines.faces]
-    sizes = np.array([len(row) for row in words], dtype=np.intp)
-    if not len(sizes):
-        return sizes, np.zeros((0, 3), dtype=np.int64)
-    text = b" ".join([row for row, *_ in lines.faces])
-    strokes = text.count(b"/")
-    if b"-" not in text and b"//" not in text and strokes % max(int(sizes.sum()), 1) == 0 and _are_alike(words, strokes, sizes):
-        numbers = numbers_in(text.replace(b"/", b" "), np.int64).reshape(int(sizes.sum()), -1) - 1
-        return sizes, np.hstack([numbers[:, :3], np.full((len(numbers), 3 - min(numbers.shape[1], 3)), -1)])
+    if not lines.faces:
+        return np.zeros(0, dtype=np.intp), np.zeros((0, 3), dtype=np.int64)
+    text, starts, sizes = words_of([row for row, *_ in lines.faces])
+    data, strokes = text.tobytes(), np.flatnonzero(text == ord("/"))
+    counts = np.diff(np.searchsorted(strokes, np.append(starts, len(text))))
+    if b"-" not in data and (counts == counts[:1]).all() and not (text[strokes + 1] <= ord(" ")).any():
+        numbers = numbers_in(data.replace(b"//", b"/0/").replace(b"/", b" "), np.int64).reshape(len(starts), -1)[:, :3] - 1
+        return sizes, np.hstack([numbers, np.full((len(numbers), 3 - numbers.shape[1]), -1)])
     found = []
-    for row, (_, *before) in zip(words, lines.faces, strict=True):
-        for corner in row:
+    for row, *before in lines.faces:
+        for corner in row.split():
             point, place, normal = [*corner.split(b"/"), b"", b""][:3]
             others = ((place, before[1]), (normal, before[2]))
-            found.append((_index(point, before[0]), *(_index(text, at) if text else -1 for text, at in others)))
+            found.append((_index(point, before[0]), *(_index(word, at) if word else -1 for word, at in others)))
     return sizes, np.array(found, dtype=np.int64)
-
-
-def _are_alike(words: list[list[bytes]], strokes: int, sizes: NDArray[np.intp]) -> bool:
-    """Whether all corners have the same number of strokes."""
-    each = strokes // max(int(sizes.sum()), 1)
-    return all(corner.count(b"/") == each for row in words for corner in row)
 
 
 def _index(text: bytes, before: int) -> int:

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.values import Vec3
 
+    CornerTable = tuple[NDArray[Any], NDArray[Any]] | tuple[None, None]
+    """Texture coordinates in an image (n x 2) or normals (n x 3), and their row at each corner of the triangles."""
+
 _OF_NORMALS = frozenset(("typeName", "variability", "custom", "default", "interpolation"))
 
 
@@ -91,26 +94,31 @@ def read_normals(prim: Prim, builder: UsdBuilder) -> bool:
     return True
 
 
-def _shared_mesh(prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], tables: tuple[Any, ...], scale: Vec3, builder: UsdBuilder) -> Id:
-    """``tables`` are the texture coordinates with their rows, and the normals with theirs."""
-    from hymeko_x.meshes.submesh import indices
-
+def _shared_mesh(
+    prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], tables: tuple[NDArray[Any] | None, ...], scale: Vec3, builder: UsdBuilder
+) -> Id:
+    """``tables`` are the texture coordinates with their rows, and the normals with theirs, or None."""
     about = tuple(f"{factor:.12g}" for factor in scale)  # computed from the prim's ancestors: its last bits are rounding errors
-    authored = repr((about, tables) if any(tables) else about)
-    content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + authored.encode()).hexdigest()
+    arrays = [b"" if table is None else table.tobytes() for table in (vertices, faces, *tables)]
+    content = hashlib.sha256(b"|".join([*arrays, repr(about).encode()])).hexdigest()
     known = builder.meshes.get(content)
     if known is not None:
         return known
     key = builder.new_id(prim, "mesh", prim.name)
     builder.meshes[content] = key
-    builder.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), indices(faces), *tables)
+    places, place_rows, normals, normal_rows = tables
+    lists = (*_listed(vertices, faces), *_listed(places, place_rows), *_listed(normals, normal_rows))
+    builder.vertices[key] = Mesh(None, scale, None, *lists)
     return key
 
 
-# ---- texture coordinates and normals ---------------------------------------------------------------------------------------------
+def _listed(table: NDArray[Any] | None, rows: NDArray[Any] | None) -> tuple[tuple[float, ...], tuple[int, ...]]:
+    from hymeko_x.meshes.submesh import indices
 
-CornerTable = tuple[tuple[float, ...], tuple[int, ...]]
-"""Texture coordinates in an image (flat, 2 numbers each) or normals (3 each), and their row at each corner of the triangles."""
+    return ((), ()) if table is None or rows is None else (tuple(table.ravel().tolist()), indices(rows))
+
+
+# ---- texture coordinates and normals ---------------------------------------------------------------------------------------------
 
 ST = "primvars:st"
 NORMALS = "primvars:normals"
@@ -133,7 +141,7 @@ def _read_normals(prim: Prim, sizes: NDArray[Any], corners: NDArray[Any]) -> Cor
 def _read_table(prim: Prim, name: str, types: tuple[str, ...], sizes: NDArray[Any], corners: NDArray[Any]) -> CornerTable:
     authored = prim.value(name)
     if authored is None or prim.types[name] not in types or prim.is_animated(name):
-        return (), ()
+        return None, None
     import numpy as np
 
     from hymeko_x.meshes.submesh import fans
@@ -145,11 +153,11 @@ def _read_table(prim: Prim, name: str, types: tuple[str, ...], sizes: NDArray[An
         rows = np.asarray(rows, dtype=np.int64)
     is_broken = spread not in _BY_CORNER or (rows is not None and index.size and index.max() >= len(rows))
     if is_broken or not len(table):
-        return (), ()
+        return None, None
     index = index if rows is None else rows[index]
     if not np.isfinite(table).all() or (index.size and (index.min() < 0 or index.max() >= len(table))):
-        return (), ()
-    return tuple(table.ravel().tolist()), tuple(fans(sizes, index).ravel().tolist())
+        return None, None
+    return table, fans(sizes, index)
 
 
 def is_table_as_written(prim: Prim, name: str, builder: UsdBuilder) -> bool:
