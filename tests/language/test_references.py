@@ -81,3 +81,14 @@ def test_circles_and_names_that_are_not_there_have_a_code_and_a_caret(text: str,
 def test_a_unit_ends_before_a_comment() -> None:
     robot = read("r : robot { a { mass 5g/* heavy */ com [0 0 5mm/*up*/] } }")
     assert robot.vertex(Id("body", "a"), parts.Body).inertial == parts.Inertial(0.005, (0.0, 0.0, 0.005))
+
+
+def test_the_role_of_an_arc_in_backticks_is_a_plain_text() -> None:
+    text = """arm : robot {
+  base {}
+  tip {}
+  @wrist : ball { + base - tip }
+  turn : motor { `0` - wrist }
+}"""
+    (edge,) = [edge for edge in hx.loads(text, "hymeko").mechanism.graph.edges.values() if isinstance(edge.data, parts.Drive)]
+    assert [type(arc.role) for arc in edge.arcs] == [str, str]

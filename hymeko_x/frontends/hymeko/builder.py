@@ -189,7 +189,7 @@ class HymekoBuilder(Builder):
     def arc(self, kind: str, item: ArcItem, scope: Scope, kinds: tuple[str, ...] | None = None) -> RobotArc:
         """An arc of an edge of this kind, with its weight. ``kinds``: what it may lead to, the likeliest first."""
         target = self.target(item.ref, scope, TARGETS[kind] if kinds is None else kinds, item)
-        return Arc(target, sign_of(item), self._weight(kind, item), item.role)
+        return Arc(target, sign_of(item), self._weight(kind, item), str(item.role))
 
     def _weight(self, kind: str, item: ArcItem) -> Weight | None:
         """An arc's weight: a pose for the edges that join bodies, numbers for the others."""
