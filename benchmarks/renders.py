@@ -45,6 +45,7 @@ _SECONDS = 300.0
 KNOWN: dict[str, str | tuple[str, ...]] = {
     "adroit": "",  # images that MuJoCo folds around a cube; other formats lay them out flat
     "manipulate_block": "",  # the same
+    "sawyer_xyz": "",  # the same: wood and metal of a table
     "hopper": "",  # thin lines, which MuJoCo draws on its patterns; other formats have the mean colour of a pattern
     "drosophila": "",  # its .msh files have normals; the points that MuJoCo has of such files go to other formats without normals
     "coupled_half_cheetah": ("urdf", "xacro", "sdf"),  # its tendon is drawn, and they have none
