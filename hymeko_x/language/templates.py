@@ -248,11 +248,14 @@ class Templates:
         return ref.dotted in self._templates or self.prototypes.find(ref.path) is None
 
     def _prototype(self, ref: Ref, node: Node) -> Prototype | None:
-        """The vertex or edge that is a type, where no template has the name."""
+        """The vertex or edge that is a type, where no template has the name.
+
+        In a robot called ``sensor`` the type ``sensor.gyro`` is that of all gyroscopes, and not an element ``gyro`` of the robot.
+        """
         if ref.dotted in self._templates:
             return None
         found = self.prototypes.find(ref.path)
-        if found is None or not isinstance(found.item, Node):
+        if found is None or not isinstance(found.item, Node) or (found.path == ref.path and ref.path[0] in standard_templates()):
             return None
         return None if place_of(found.item) == place_of(node) else found
 

@@ -92,3 +92,13 @@ def test_the_role_of_an_arc_in_backticks_is_a_plain_text() -> None:
 }"""
     (edge,) = [edge for edge in hx.loads(text, "hymeko").mechanism.graph.edges.values() if isinstance(edge.data, parts.Drive)]
     assert [type(arc.role) for arc in edge.arcs] == [str, str]
+
+
+@pytest.mark.parametrize("name", ["sensor", "actuator"])
+def test_a_robot_may_be_called_like_a_type(name: str) -> None:
+    text = f"""<mujoco model="{name}"><worldbody><site name="a"/><camera name="eye" fovy="41" resolution="1920 1200"/>
+<body><joint name="motor"/><geom size="1"/></body></worldbody>
+<sensor><camprojection site="a" camera="eye"/><camprojection site="a" camera="eye"/></sensor>
+<actuator><motor name="motor" joint="motor" gear="2"/><motor name="other" joint="motor" gear="3"/></actuator></mujoco>"""
+    robot = hx.loads(text, "mjcf")
+    assert hx.diff(robot, hx.loads(hx.dumps(robot, "hymeko"), "hymeko")) == ()
