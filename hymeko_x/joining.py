@@ -36,7 +36,7 @@ def with_names(mechanism: Mechanism, change: Callable[[str], str], *, is_part: b
     }
     pairs = ((key, Id(key.kind, change(key.name))) for table in (vertices, edges) for key in table if key != WORLD)
     names = {old: new for old, new in pairs if old != new}
-    renamed = with_references(rename(replace(mechanism, graph=Hypergraph(vertices, edges)), names), names)
+    renamed = with_references(rename(replace(mechanism, graph=Hypergraph(vertices, edges)), names), names, in_extras=False)
     extras = {key: tuple(_extras(found, change, is_of_whole=is_part and key == ROOT)) for key, found in renamed.extras.items()}
     return replace(renamed, extras={key: found for key, found in extras.items() if found})
 
@@ -68,7 +68,7 @@ def _extras(found: Iterable[Extra], change: Callable[[str], str], *, is_of_whole
     for extra in found:
         row = next((row for row in formats.FORMATS if row.name == extra.format and row.names_in), None)
         if row is not None and row.names_in is not None:
-            changed = formats.loaded(row.names_in)(extra, change, is_of_whole=is_of_whole)
+            changed = formats.loaded(row.names_in)(extra, lambda _kind, name: change(name), is_of_whole=is_of_whole)
             yield from () if changed is None else (changed,)
         elif not is_of_whole or extra.text.startswith("<"):
             yield extra

@@ -75,8 +75,8 @@ class Format(Struct, frozen=True):
     flattens: str | None = None
     """The function ``(mechanism, text) -> mechanism`` by which each element has all that it inherits; ``text`` is it as printed."""
     names_in: str | None = None
-    """The function ``(extra, change, is_of_whole) -> extra or None`` that changes the names in an extra of a part that becomes one of a
-    robot; None for what a robot has once."""
+    """The function ``(extra, change, is_of_whole) -> extra or None`` that changes the names in an extra by ``change(kind, name)``; None for
+    what a robot has once, in a part that becomes one of a robot (``is_of_whole``)."""
     references: str | None = None
     """The function ``(notations, names) -> notations`` by which references in the notations follow elements that got other names."""
     one_namespace: bool = False

@@ -36,7 +36,7 @@ FULL: tuple[parts.VertexPart | parts.EdgePart, ...] = (
     parts.Frame((0.1,)),
     parts.Material("m", (1.0, 0.0, 0.0, 1.0), 0.1, 0.2, 0.3, 0.4, 0.5, 0.6),
     parts.Texture("t.png", "t"),
-    parts.Mesh("m.stl", (1.0, 2.0, 3.0), "m", (0.0, 1.0, 2.0), (0, 1, 2), (0.0, 0.5), (0, 1, 2)),
+    parts.Mesh("m.stl", (1.0, 2.0, 3.0), "m", (0.0, 1.0, 2.0), (0, 1, 2), (0.0, 0.5), (0, 1, 2), (0.0, 0.0, 1.0), (0, 0, 0)),
     parts.Actuator("motor", PARAMETERS),
     parts.Sensor("imu", 100.0, PARAMETERS),
     parts.Camera(1.0, (640, 480), PARAMETERS),

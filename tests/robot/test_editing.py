@@ -239,3 +239,30 @@ def test_a_geom_is_for_what_the_edit_says(role: Role, contype: int, group: int) 
         geom = model.geom(name)
         assert (geom.contype[0], geom.conaffinity[0], geom.group[0]) == (contype, contype, group)
     assert hx.loads(hx.dumps(e.robot, "mjcf"), "mjcf").shapes["new"].role is role
+
+
+REFERRING = """<mujoco><asset><texture name="wood" builtin="flat" type="2d" width="8" height="8"/>
+<material name="paint" texture="wood"/></asset>
+<worldbody><light name="spot" mode="targetbody" target="arm"/><light name="sky" type="image" texture="wood"/>
+<camera name="eye" mode="targetbody" target="arm"/><body name="arm"><joint name="turn"/><geom name="ball" size="1"/>
+<site name="tip" material="paint"/><site name="end"/></body></worldbody>
+<tendon><spatial name="rope" material="paint"><site site="tip"/><site site="end"/></spatial></tendon>
+<custom><tuple name="both"><element objtype="body" objname="arm"/><element objtype="site" objname="tip"/></tuple></custom></mujoco>"""
+
+
+@pytest.mark.parametrize("name", ["arm", "paint", "tip", "turn", "ball"])
+def test_all_that_refers_to_an_element_by_its_name_follows_a_new_one(name: str) -> None:
+    """MuJoCo refuses a file that refers to what is not there."""
+    robot = hx.loads(REFERRING, "mjcf")
+    with robot.edit() as e:
+        e.rename(name, f"new_{name}")
+    text = hx.dumps(e.robot, "mjcf")
+    mujoco.MjModel.from_xml_string(text)
+    assert text.count(f'"{name}"') == 0
+
+
+def test_what_is_aimed_at_a_body_of_a_part_is_aimed_at_it_in_the_whole() -> None:
+    host = hx.loads('<mujoco><worldbody><body name="arm"><geom size="1"/></body></worldbody></mujoco>', "mjcf")
+    whole = host.attach(hx.loads(REFERRING, "mjcf"), at="arm", prefix="hand/")
+    model = mujoco.MjModel.from_xml_string(hx.dumps(whole, "mjcf"))
+    assert model.body(model.camera("hand/eye").targetbodyid[0]).name == "hand/arm"
