@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.verdict import Check
 
-_OPEN = 1e-6
-"""In m: a closure whose ends are this far apart is open."""
+_OPEN = 2e-9
+"""In m: a closure whose ends are this far apart is open; nearer ones are within what the check of closures allows."""
 
 LoopPair = tuple[Loop, Loop, bool]
 """A closure of each robot, and whether the second names the two bodies the other way round."""
