@@ -13,7 +13,7 @@ from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import relevant
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
-from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
+from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Body, Mesh, Texture
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import JointView
+    from hymeko_x.ir.mechanism import JointView, Mechanism
     from hymeko_x.rewrite import Options
     from hymeko_x.source import Files, Source
 
@@ -79,8 +79,6 @@ class Conversion:
         self.folder = os.path.dirname(edited.name) or "."
         self._used: Guess | None = None
         self._homes: dict[Id, Id] = {}
-        self.mechanism = Mechanism("")
-        self._earlier: tuple[Mechanism, Guess | None, dict[Id, Id]] = (self.mechanism, None, {})
 
     @property
     def is_known(self) -> bool:
@@ -92,7 +90,6 @@ class Conversion:
 
         Raises: Refusal when ORIGINAL cannot be written in the format.
         """
-        self._earlier = (self.mechanism, self._used, self._homes)
         self.mechanism, self.source = mechanism, source
         notes = Report() if self.is_known else self.notes
         guess = self._again(self._used) if self._used is not None else self._first()
@@ -104,10 +101,6 @@ class Conversion:
         own = {new: homes.get(old, old) for new, old in names.given.items() if not _is_beside(new, old)}
         named = with_new_names(restored, {new: old for new, old in own.items() if old != WORLD})
         return with_edited_poses(self._with_transmissions(named), guess.image, self.edited, self.format)
-
-    def go_back(self) -> None:
-        """The last text is given up: what was compared before it counts."""
-        self.mechanism, self._used, self._homes = self._earlier
 
     def _first(self) -> Guess:
         """How the first conversion may have been made."""
@@ -141,8 +134,8 @@ class Conversion:
         """Whether a name is one that a format made: of an element without one, or of one beside a link of its name."""
         home = self._homes.get(old, old)
         joint = self.mechanism.joints.get(home)
-        is_body_s = joint is not None and len(joint.joint.dofs) != 1
-        return is_body_s or self.mechanism.notation(home, UNNAMED) is not None or _is_beside(new, old)
+        is_of_body = joint is not None and len(joint.joint.dofs) != 1
+        return is_of_body or self.mechanism.notation(home, UNNAMED) is not None or _is_beside(new, old)
 
     def _distance(self, image: Mechanism) -> int:
         """In how much the edited file differs from an image, apart from names."""

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Set
 
     from hymeko_x.compare.diff import Difference
+    from hymeko_x.edits.conversion import Left
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import VertexPart
@@ -81,14 +82,14 @@ class Updated(Struct, frozen=True):
 class _Round(NamedTuple):
     """One round of an update: the robot as the text had it, and what changes in the texts; ``lost`` edits have no place in the format.
 
-    ``distance`` is in how much the text was not what EDITED asks for.
+    ``left`` is in what the text was not yet what EDITED asks for.
     """
 
     before: Mechanism
     texts: Texts
     beside: Mapping[str, bytes]
     lost: tuple[Difference, ...]
-    distance: int
+    left: Left
 
 
 def update(original: Source, format: Format, edited: Source, edited_format: Format, options: Options, report: Report) -> Updated:
@@ -113,12 +114,11 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
             later = _round(source, format, conversion, edited, Report())
         except Refusal as error:
             raise _broken(original, error) from error
-        if changed and later.distance >= found.distance:
-            conversion.go_back()
+        if changed and later.left.number >= found.left.number:
             break
         found.texts.report_printed(original, report)
         changed, beside, found = new, new_beside, later
-    _report_left(found, conversion, original, format, report)
+    _report_left(found, original, format, report)
     if not changed:  # the original is the same already, in the words of its own format
         return Updated(first.before, (), original.data, {}, {}, {}, report)
     report.extend(conversion.notes)
@@ -137,20 +137,19 @@ def _round(original: Source, format: Format, conversion: Conversion, edited: Sou
     after = _without_inertials(before, after, {element for element, field in gone if field.partition(".")[0] == "inertial"})
     dropped = [edit for edit in every if (str(edit.element), edit.field) in gone and not _is_inherited(edit) and not _is_weight(edit)]
     texts = text_with_edits(original, format, before, after, report) if len(dropped) < len(every) else Texts({}, {})
-    return _Round(before, texts, beside, tuple(dropped), conversion.left().number)
+    return _Round(before, texts, beside, tuple(dropped), conversion.left())
 
 
-def _report_left(found: _Round, conversion: Conversion, original: Source, format: Format, report: Report) -> None:
+def _report_left(found: _Round, original: Source, format: Format, report: Report) -> None:
     """Report the edits that have no place in the original, after the last round."""
-    left = conversion.left()
-    lost = [edit for edit in found.lost if edit.element not in left.renamed]
+    lost = [edit for edit in found.lost if edit.element not in found.left.renamed]
     for edit in lost:
         message = f"the edit has no place in {format.name}: {edit}"
         report.warn(codes.EDIT_DROPPED, message, found.before.origin(edit.element), element=str(edit.element))
     found.texts.report_missing(original, report)
     if not found.texts.missing:
-        _report_missing([*left.names, *(() if lost else left.edits)], original, report)
-        for words in left.made_names:
+        _report_missing([*found.left.names, *(() if lost else found.left.edits)], original, report)
+        for words in found.left.made_names:
             hint = f"{format.name} has no name for it there"
             report.note(codes.EDIT_DROPPED, f"the edit did not arrive: {words}", Origin(original.name), hint=hint)
 
@@ -160,9 +159,9 @@ def _without_inertials(before: Mechanism, after: Mechanism, bodies: Set[str]) ->
     inertials: dict[Id, VertexPart] = {}
     for key, body in after.vertices(Body) if bodies else ():
         if str(key) in bodies:
-            earlier = before.graph.vertices.get(key)
-            inertials[key] = replace(body, inertial=earlier.inertial if isinstance(earlier, Body) else None)
-    return after.with_graph(after.graph.replace(vertices=inertials)) if inertials else after
+            earlier = before.part(key, Body)
+            inertials[key] = replace(body, inertial=None if earlier is None else earlier.inertial)
+    return after.replace(vertices=inertials)
 
 
 def _called_after(before: Mechanism, after: Mechanism) -> dict[Id, Id]:
@@ -214,7 +213,7 @@ def _without_unused(before: Mechanism, after: Mechanism) -> Mechanism:
         if all(edge in gone or (key.kind == "material" and edge.kind == "layer") for edge in edges):
             gone |= {key, *edges}
     extras = {key: found for key, found in after.extras.items() if key not in gone}
-    return replace(after.with_graph(graph.replace(without=gone)), extras=extras) if gone else after
+    return replace(after.replace(without=gone), extras=extras) if gone else after
 
 
 def _is_weight(edit: Difference) -> bool:
@@ -243,7 +242,7 @@ def _with_new_assets(before: Mechanism, after: Mechanism, edited: Source) -> tup
     for key, part in after.assets():
         if isinstance(part, Mesh | Texture) and part.uri in names:
             changed[key] = replace(part, uri=names[part.uri])
-    return (after.replace(vertices=changed)), contents
+    return after.replace(vertices=changed), contents
 
 
 def _is_below(uri: str) -> bool:

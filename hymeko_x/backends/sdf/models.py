@@ -135,16 +135,15 @@ def _members(sheet: SdfSheet) -> dict[str, dict[Id, None]]:
 def _closures_last(order: Iterable[Id], mechanism: Mechanism) -> Iterable[Id]:
     """The elements in order, but each closure behind the joint above its link: the first joint that leads to a link is that of the tree."""
     waiting: dict[Id, list[Id]] = {}
-    done: set[Id] = set()
     members = tuple(order)
-    joints = {key for key in members if key.kind == "joint"}
+    coming = {key for key in members if key.kind == "joint"}
     for key in members:
         edge = mechanism.graph.edges.get(key)
         above = mechanism.parent_joint.get(edge.arcs[-1].target) if edge is not None and key.kind == "loop" else None
-        if above is not None and above.id in joints - done:
+        if above is not None and above.id in coming:
             waiting.setdefault(above.id, []).append(key)
             continue
-        done.add(key)
+        coming.discard(key)
         yield key
         yield from waiting.get(key, ())
 

@@ -15,7 +15,7 @@ from hymeko_x.backends.sdf.nesting import nesting_of
 from hymeko_x.diagnostics import listed
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
-from hymeko_x.ir.mechanism import ROOT, WORLD, Id
+from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import free_name, names_in_use, rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Camera, DofKind, Light, Sense, Sensor
@@ -48,7 +48,7 @@ def make_names_unique_in_models(mechanism: Mechanism, context: Context) -> Mecha
     nesting = nesting_of(mechanism)
     taken = {scope.removesuffix(words.SCOPE) for scope in nesting.models}
     unwritten = _unwritten(mechanism) | {*nesting.models.values()}
-    is_from_sdf = _is_from_sdf(mechanism)
+    is_from_sdf = notations.is_from_sdf(mechanism)
     order = ("body", "joint", "loop", "frame")
     named = [key for key in (*mechanism.graph.vertices, *mechanism.graph.edges) if key.kind in order]
     for key in sorted(named, key=lambda key: order.index(key.kind)):
@@ -63,10 +63,6 @@ def make_names_unique_in_models(mechanism: Mechanism, context: Context) -> Mecha
             message = f"{key} is written as '{name}': {_MEANING.format('model')}"
             context.report.note(codes.RENAMED, message, mechanism.origin(key), element=str(renamed[key]))
     return rename(mechanism, renamed)
-
-
-def _is_from_sdf(mechanism: Mechanism) -> bool:
-    return mechanism.notation(ROOT, notations.VERSION) is not None
 
 
 def _unwritten(mechanism: Mechanism) -> frozenset[Id]:
@@ -112,7 +108,7 @@ def _renamed_mounts(mechanism: Mechanism) -> dict[Id, Id]:
     """The new ids of sensors, cameras and lights whose names something on the same link or joint has, or that SDF refuses."""
     renamed: dict[Id, Id] = {}
     names = names_in_use(mechanism)
-    is_from_sdf = _is_from_sdf(mechanism)
+    is_from_sdf = notations.is_from_sdf(mechanism)
     for holder, things in _mounted(mechanism).items():
         scope = words.split_scope(holder.name)[0]
         taken = _names_beside(mechanism, holder)
@@ -161,7 +157,7 @@ def _renamed_shapes(views: Iterable[ShapeView], taken: dict[str, str], mechanism
 
     Shapes without a name get theirs from their place, after all others.
     """
-    is_from_sdf = _is_from_sdf(mechanism)
+    is_from_sdf = notations.is_from_sdf(mechanism)
     by_tag = [(tag, number, view) for tag, role in words.ROLES.items() for number, view in enumerate(_of(views, role), 1)]
     for tag, _, view in by_tag:
         own = view.shape.name

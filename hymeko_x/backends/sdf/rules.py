@@ -37,15 +37,11 @@ if TYPE_CHECKING:
     from hymeko_x.rewrite.context import Context, Rule
 
 
-def _is_from_sdf(mechanism: Mechanism) -> bool:
-    return mechanism.notation(ROOT, notations.VERSION) is not None
-
-
 def unless_from_sdf(rule: Rule) -> Rule:
     """The rule for mechanisms of other formats: what an SDF file has, SDF can represent."""
 
     def applied(mechanism: Mechanism, context: Context) -> Mechanism:
-        return mechanism if _is_from_sdf(mechanism) else rule(mechanism, context)
+        return mechanism if notations.is_from_sdf(mechanism) else rule(mechanism, context)
 
     applied.__doc__ = rule.__doc__
     return applied
@@ -78,7 +74,7 @@ def _moved_by(dof: Dof, coordinate: float) -> Pose:
 
 def chain_joints(mechanism: Mechanism, context: Context) -> Mechanism:
     """A joint with dofs that no SDF joint has becomes a chain of joints with one dof each."""
-    if _is_from_sdf(mechanism):
+    if notations.is_from_sdf(mechanism):
         return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if words.default_type(view.joint) is None])
     return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if not _is_joint(view)], keeps_balls=True)
 
@@ -98,13 +94,12 @@ def remove_refused_numbers(mechanism: Mechanism, context: Context) -> Mechanism:
     """A dof without the numbers that libsdformat or Drake refuse: limits that are crossed, negative damping, negative stiffness."""
     edges: dict[Id, RobotEdge] = {}
     for view in mechanism.joints.values():
+        dofs = view.joint.dofs
         for what, accepted in _REFUSED.items():
-            joint = edges[view.id].data if view.id in edges else view.joint
-            assert isinstance(joint, Joint)
-            dofs = tuple([accepted(dof) for dof in joint.dofs])
-            if dofs == joint.dofs:
+            before, dofs = dofs, tuple([accepted(dof) for dof in dofs])
+            if dofs == before:
                 continue
-            edges[view.id] = replace(mechanism.graph.edges[view.id], data=replace(joint, dofs=dofs))
+            edges[view.id] = replace(mechanism.graph.edges[view.id], data=replace(view.joint, dofs=dofs))
             message = f"{view.id}: {what}, which programs that read SDF refuse; the joint is written without"
             context.report.warn(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
     return mechanism.replace(edges=edges)
@@ -150,7 +145,7 @@ def put_world_geometry_on_a_link(mechanism: Mechanism, context: Context) -> Mech
     for key, edge in mechanism.graph.edges.items():
         if isinstance(edge.data, Shape | Mount) and any(arc.target == WORLD and arc.sign > 0 for arc in edge.arcs):
             thing = next((mechanism.graph.vertices.get(arc.target) for arc in edge.arcs if arc.sign < 0), None)
-            if not isinstance(thing, Light) and not ((in_world or _is_from_sdf(mechanism)) and isinstance(thing, Frame)):
+            if not isinstance(thing, Light) and not ((in_world or notations.is_from_sdf(mechanism)) and isinstance(thing, Frame)):
                 moved[key] = edge
     if not moved:
         return mechanism

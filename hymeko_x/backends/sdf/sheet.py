@@ -40,7 +40,7 @@ class SdfSheet:
     def __init__(self, mechanism: Mechanism, within: str) -> None:
         self.mechanism = mechanism
         self.within = within
-        self.from_sdf = mechanism.notation(ROOT, notations.VERSION) is not None
+        self.from_sdf = notations.is_from_sdf(mechanism)
         self.places = Places(mechanism)
         self.declared: dict[str, str] = {}
 

@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.notations import Notation, flag, word
 from hymeko_x.ir.values import Pose, numbers_text
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from hymeko_x.ir.mechanism import Mechanism
 
 VERSION = word("sdf.version")
 """Mechanism: the version of the file. Its presence says that the mechanism came from SDF."""
@@ -33,6 +36,11 @@ SEVERAL = flag("sdf.models", "several")
 """Mechanism: its models are at top level, without a world."""
 IN_WORLD = flag("sdf.place", "world")
 """Frame, joint: it stands in the world, beside the only model."""
+
+
+def is_from_sdf(mechanism: Mechanism) -> bool:
+    """Whether the mechanism was read from an SDF file."""
+    return mechanism.notation(ROOT, VERSION) is not None
 
 
 def _numbers(pose: Pose) -> str:
