@@ -134,6 +134,16 @@ def test_ten_thousand_mutated_texts_are_judged_alike(name: str) -> None:
     assert judged(name, range(10_000))["alike"] > 8_500
 
 
+@pytest.mark.parametrize("text", ["r{a -inf1}", "r{a=-info.b}", "r{a +infinite{}}", "r{a -import1}", "r{- a.inf1}", "r{[-inf 1] -inf2}"])
+def test_a_name_that_begins_like_infinity_stands_behind_a_blank(text: str) -> None:
+    """A program with a lexer reads the number first; without a blank no grammar takes it, with one they all do."""
+    assert [name for name in NAMES if accepts(name, text)] == (["llguidance", "gbnf"] if "a.inf" in text else [])
+    spaced = re.sub(r"([-+])(?=inf\w|im)", r"\1 ", text)
+    assert [name for name in NAMES if accepts(name, spaced)] == ["llguidance", "gbnf"]
+    assert is_parsed(text)
+    assert is_parsed(spaced)
+
+
 # ---- the notations -----------------------------------------------------------------------------------------------------------------
 
 
@@ -185,6 +195,10 @@ def test_names_without_quotes_are_names_of_the_language() -> None:
     for word in ("a", "_", "x1", "import_", "impor", "asx", "useful", "infinite", "nano", "sequel", "i", "関節"):
         assert pattern.fullmatch(word)
     assert [word for word in (*KEYWORDS, "1a", "a b", "a.b", "") if pattern.fullmatch(word)] == []
+
+
+def test_rules_of_llama_cpp_are_dashed_words_of_small_letters() -> None:
+    assert [name for name in re.findall(r"^(\S+) ::=", gbnf(), re.MULTILINE) if not re.fullmatch("[a-z][a-z0-9-]*", name)] == []
 
 
 def test_the_notations_have_the_same_rules() -> None:

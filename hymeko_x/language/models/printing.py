@@ -34,7 +34,7 @@ def llguidance() -> str:
         return optional.get(name) or name.replace("-", "_")
 
     lines = [f"// {_TITLE}", "%llguidance {}", "", *_rule_lines(rules, symbol, ": ", "\n    | "), ""]
-    lines += (f"{name}: /{_slashes(pattern)}/" for name, pattern in _all_terminals(terminals).items())
+    lines += (f"{symbol(name)}: /{_slashes(pattern)}/" for name, pattern in _all_terminals(terminals).items())
     return "\n".join(lines) + "\n"
 
 
@@ -44,10 +44,10 @@ def gbnf() -> str:
     names = {START: "root", GAP: "gap", FIRST_GAP: "beginning?"}
 
     def symbol(name: str) -> str:
-        return names.get(name) or (name.lower() if name.isupper() else name)
+        return names.get(name) or name.lower().replace("_", "-")
 
     lines = [f"# {_TITLE}", *_rule_lines(rules, symbol, " ::= ", " |\n  "), "gap ::= blanks?"]
-    lines += (f"{name.lower()} ::= {_gbnf(patterns.parse(pattern))}" for name, pattern in _all_terminals(terminals).items())
+    lines += (f"{symbol(name)} ::= {_gbnf(patterns.parse(pattern))}" for name, pattern in _all_terminals(terminals).items())
     return "\n".join(lines) + "\n"
 
 

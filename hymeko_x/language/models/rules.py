@@ -11,7 +11,7 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from hymeko_x.language.grammar import grammar_text
-from hymeko_x.language.models.terminals import DROPPED, PLAIN
+from hymeko_x.language.models.terminals import DROPPED, NAME_AT_SIGN, PLAIN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,15 +20,18 @@ Rules = dict[str, list[tuple[str, ...]]]
 """By name the alternatives of a rule; names of terminals are in capitals."""
 
 START = "start"
+AT_SIGN = "NAME-AT-SIGN"
+"""A name right behind a direction."""
 BLANKS, GAP, FIRST_GAP = "BLANKS", "GAP", "FIRST-GAP"
 """A blank that must stand, one that may, and what may stand before the first word."""
 
 
 class Before(Enum):
-    """What stands before: a word, behind which another word needs a blank; a sign; or a sign to which the next word is joined."""
+    """What stands before: a word, behind which another word needs a blank; a sign, a direction; or a sign to which the next word is joined."""
 
     WORD = "w"
     SIGN = "s"
+    DIRECTION = "d"
     JOINED = "j"
 
 
@@ -44,7 +47,7 @@ def plain_rules() -> tuple[Rules, dict[str, str]]:
     rules = _useful(_without_left_recursion(_useful(rules)), START)
     spaced = _useful(_renamed(_spaced(rules, patterns)), START)
     used = {symbol for choices in spaced.values() for choice in choices for symbol in choice}
-    return spaced, {name: pattern for name, pattern in patterns.items() if name in used}
+    return spaced, {name: pattern for name, pattern in (patterns | {AT_SIGN: NAME_AT_SIGN}).items() if name in used}
 
 
 def _lark_rules() -> tuple[Rules, dict[str, str]]:
@@ -134,21 +137,26 @@ def _ways(choice: tuple[str, ...], before: Before, rules: Rules, patterns: dict[
         if symbol in rules:
             ways = [(end, (*done, f"{symbol}-{now.value}-{end.value}")) for now, done in ways for end in Before]
         else:
-            ways = [step for now, done in ways if (step := _after(symbol, patterns[symbol], now, done)) is not None]
+            ways = [(end, (*done, *more)) for now, done in ways for end, more in _after(symbol, patterns[symbol], now)]
     yield from ways
 
 
-def _after(symbol: str, pattern: str, now: Before, done: tuple[str, ...]) -> tuple[Before, tuple[str, ...]] | None:
-    """Behind what stands there a terminal, with the blank that must or may stand between; None where it cannot stand."""
+def _after(symbol: str, pattern: str, now: Before) -> Iterator[tuple[Before, tuple[str, ...]]]:
+    """Behind what stands there a terminal, with the blank that must or may stand between: each way, none where it cannot stand."""
     text = pattern.replace("\\", "")
     if text in _JOINS:
-        return (Before.JOINED, (*done, symbol)) if now is Before.WORD else None
-    if now is Before.JOINED:
-        return (Before.WORD, (*done, symbol)) if symbol == "NAME" else None
-    if text in _SIGNS:
-        return Before.SIGN, (*done, GAP, symbol)
-    end = Before.SIGN if symbol in ("DIRECTION", "EDGE_WORD") else Before.WORD
-    return end, (*done, BLANKS if now is Before.WORD else GAP, symbol)
+        if now is Before.WORD:
+            yield Before.JOINED, (symbol,)
+    elif now is Before.JOINED:
+        if symbol == "NAME":
+            yield Before.WORD, (symbol,)
+    elif text in _SIGNS:
+        yield Before.SIGN, (GAP, symbol)
+    elif now is Before.DIRECTION and symbol == "NAME":
+        yield from ((Before.WORD, (BLANKS, symbol)), (Before.WORD, (AT_SIGN,)))
+    else:
+        end = {"DIRECTION": Before.DIRECTION, "EDGE_WORD": Before.SIGN}.get(symbol, Before.WORD)
+        yield end, (BLANKS if now is Before.WORD else GAP, symbol)
 
 
 # ---- order -------------------------------------------------------------------------------------------------------------------

@@ -18,8 +18,11 @@ _OTHER_LETTERS = "À-ÖØ-öø-ʯΑ-ΡΣ-ώА-ҁぁ-ゖァ-ヺ一-鿯가-힣"
 """Letters beyond ASCII that names may have without quotes: Latin, Greek, Cyrillic, kana, CJK, Hangul. In backticks any letter may stand."""
 
 
+_ANY = "*"
+
+
 def words_except(words: Iterable[str]) -> str:
-    """The pattern of names that are none of these words of small ASCII letters."""
+    """The pattern of names that are none of these words of small ASCII letters; ``i*`` is every name that begins with ``i``."""
     return _except(frozenset(words), _FIRST)
 
 
@@ -30,6 +33,8 @@ def _except(words: frozenset[str], letters: str) -> str:
     found = [f"[{_without(letters, heads)}{_OTHER_LETTERS}]{tail}"]
     for head in heads:
         rests = frozenset(word[1:] for word in words if word.startswith(head))
+        if _ANY in rests:
+            continue
         inner = _except(rests - {""}, _NEXT) if rests - {""} else f"[{_NEXT}{_OTHER_LETTERS}]{tail}"
         found.append(f"{head}(?:{inner})" + ("" if "" in rests else "?"))
     return "|".join(found)
@@ -44,9 +49,11 @@ def _without(letters: str, left_out: list[str]) -> str:
 KEYWORDS = ("inf", "nan", "rel", "seq", "concurrent", "import", "using", "const", "as", "use")
 """Words that are no names, or not everywhere: a model has to quote them."""
 
+_QUOTED_NAME = r"`(?:[^`\\\n]|\\[^\n])+`"
+
 PLAIN: Mapping[str, str] = MappingProxyType(
     {
-        "NAME": rf"{words_except(KEYWORDS)}|`(?:[^`\\\n]|\\[^\n])+`",
+        "NAME": f"{words_except(KEYWORDS)}|{_QUOTED_NAME}",
         "NUMBER": r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?|[+-]?inf|nan",
         "QUANTITY": r"[+-]?[0-9]+(?:\.[0-9]+)?[A-DF-Za-df-z%°µ][A-Za-z0-9%]*(?:[/*·][A-Za-z0-9%]+|\^-?[0-9]+)*",
         "STRING": r'"(?:[^"\\]|\\[^\n])*"|' + r"'(?:[^'\\]|\\[^\n])*'|" + r'"""(?:"?"?[^"])*"""',
@@ -55,6 +62,8 @@ PLAIN: Mapping[str, str] = MappingProxyType(
     }
 )
 """Instead of the terminals of these names."""
+NAME_AT_SIGN = f"{words_except((*KEYWORDS, 'i*'))}|{_QUOTED_NAME}"
+"""Names that may stand right behind a direction: ``-i`` begins the number ``-inf``, and programs with a lexer do not go back from there."""
 DROPPED = frozenset({"NUMBERS", "MATRIX", "QUOTED_REF", "LEGACY_HEADER", "CONSTANT", "USING", "SEMICOLON", "group"})
 """Lists are the rule `vector`; the others, the group of arcs among them, are forms that no text is printed in."""
 
