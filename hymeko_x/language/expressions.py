@@ -238,5 +238,5 @@ def _calculates(item: Item | Value | None) -> bool:
         case Node():
             return any(map(_calculates, item.items)) or any(kind.arguments for kind in item.stereotypes)
         case tuple():
-            return any(map(_calculates, item))
+            return any(_calculates(part) for part in item if type(part) is not float)
     return False

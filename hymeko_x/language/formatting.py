@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.language.machine import ParseError
 from hymeko_x.language.parser import machine, parse
 from hymeko_x.language.printer import INDENT, WIDTH
+from hymeko_x.language.terminals import TERMINALS, Malformed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -48,6 +50,9 @@ _TIGHT_BEFORE = frozenset({",", ")", "]", ".", "="})
 _TIGHT_AFTER = frozenset({"(", "[", ".", "=", "@"})
 _SIGNS = frozenset({"DIRECTION", "MODIFIER"})
 _COMMENTS = frozenset({"LINE_COMMENT", "BLOCK_COMMENT"})
+_LISTS = frozenset({"NUMBERS", "MATRIX"})
+_FALLIBLE = frozenset({"STRING", "NAME", *_LISTS})
+"""Tokens that may have no value."""
 
 
 class Token(NamedTuple):
@@ -70,15 +75,18 @@ def format_text(text: str, name: str = "<text>") -> str:
 
     Raises: Refusal (HX060, HX007) as :func:`hymeko_x.language.parser.parse` does.
     """
-    parse(text, name)
-    tokens = list(_tokens(text))
+    try:
+        tokens = _tokens(text)
+    except (ParseError, Malformed):
+        parse(text, name)
+        raise
     lines: list[str] = []
     for line in _fitted(_lines(tokens)):
         if line.is_after_blank and lines:
             lines.append("")
         lines.append(INDENT * line.depth + _joined(line.tokens))
     found = "".join(f"{line}\n" for line in lines)
-    if [_plain(token) for token in _tokens(found)] != [_plain(token) for token in tokens]:
+    if found != text and [_plain(token) for token in _tokens(found)] != [_plain(token) for token in tokens]:
         raise refuse(codes.BUG, "the text in its usual layout is another text; it is left as it is", Origin(name))
     return found
 
@@ -91,49 +99,72 @@ def _plain(token: Token) -> tuple[str, str]:
 
 
 class _Collector(dict[str, "Convert"]):
-    """Collects every token that the machine reads, with its place."""
+    """Collects every token that the machine reads, with its place, and the places where items begin."""
 
-    def __init__(self) -> None:
-        super().__init__()
+    def __init__(self, text: str) -> None:
+        super().__init__(dict.fromkeys(machine().statements, self._statement))
         self.found: list[tuple[str, str, int]] = []
+        self.starts: set[int] = set()
+        self._text = text
+
+    def _statement(self, word: str, offset: int) -> None:
+        self.starts.add(offset)
+        self.found += machine().parts(self._text, offset, offset + len(word))
 
     def get(self, kind: str, default: object = None) -> Convert:
         def convert(text: str, offset: int) -> str:
             self.found.append((kind, text, offset))
             return text
 
-        return convert
+        return super().get(kind, convert)
 
 
-def _tokens(text: str) -> Iterator[Token]:
-    """The tokens of a text that can be parsed, with the comments between them; lists of numbers in pieces."""
-    collector, starts = _Collector(), set[int]()
+def _tokens(text: str) -> list[Token]:
+    """The tokens of a text, with the comments between them. Raises: ParseError, Malformed."""
+    collector = _Collector(text)
 
     def item(parts: list[object], offset: int) -> None:
-        starts.add(offset)
+        collector.starts.add(offset)
 
     def other(parts: list[object], offset: int) -> None:
         return None
 
     actions: dict[str, Reduce] = {**dict.fromkeys(_RULES, other), **dict.fromkeys(_ITEMS, item)}
     machine().run(text, collector, actions, [])
+    tokens: list[Token] = []
     end = 0
     for kind, word, start in (*collector.found, ("$END", "", len(text))):
-        breaks = 0
-        for comment in _COMMENT.finditer(text, end, start):
-            breaks = text.count("\n", end, comment.start())
-            yield Token("BLOCK_COMMENT" if comment[0].startswith("/*") else "LINE_COMMENT", comment[0].rstrip(), breaks)
-            end = comment.end()
-        breaks = text.count("\n", end, start)
-        if kind in ("NUMBERS", "MATRIX"):
-            yield from _pieces(word, breaks, begins_item=start in starts)
+        gap = text[end:start]
+        if gap and not gap.isspace():
+            comments, gap = _comments(gap)
+            tokens += comments
+        breaks = gap.count("\n")
+        if kind in _FALLIBLE:
+            TERMINALS[kind](word, start)
+        if kind in _LISTS:
+            tokens += _list_tokens(word, breaks, begins_item=start in collector.starts)
         elif kind != "$END":
-            yield Token(kind, word, breaks, start in starts)
+            tokens.append(Token(kind, word, breaks, start in collector.starts))
         end = start + len(word)
+    return tokens
 
 
-def _pieces(text: str, breaks: int, *, begins_item: bool) -> Iterator[Token]:
-    """The brackets, commas and numbers of a list."""
+def _comments(gap: str) -> tuple[list[Token], str]:
+    """The comments between two tokens, and what stands behind the last of them."""
+    found, end = [], 0
+    for comment in _COMMENT.finditer(gap):
+        kind = "BLOCK_COMMENT" if comment[0].startswith("/*") else "LINE_COMMENT"
+        found.append(Token(kind, comment[0].rstrip(), gap.count("\n", end, comment.start())))
+        end = comment.end()
+    return found, gap[end:]
+
+
+def _list_tokens(text: str, breaks: int, *, begins_item: bool) -> Iterator[Token]:
+    """A list of numbers as one token; the brackets, commas and numbers of one with line breaks in it."""
+    if "\n" not in text:
+        words = " ".join(_PIECES.findall(text))
+        yield Token("NUMBERS", words.replace("[ ", "[").replace(" ]", "]").replace(" ,", ","), breaks, begins_item)
+        return
     end = 0
     for piece in _PIECES.finditer(text):
         before = breaks if piece.start() == 0 else text.count("\n", end, piece.start())

@@ -100,8 +100,8 @@ class Machine:
         words = [["KEYWORD", rf"(?:{'|'.join(self._keywords)})\b"]]
         statements = [item for item in tables["terminals"] if item[0] in tables["statements"]]
         terminals = [item for item in tables["terminals"] if item not in statements]
-        self._statements = {name for name, _ in statements}
-        self._divisible = {*self._statements, _CALCULATION}
+        self.statements = {name for name, _ in statements}
+        self._divisible = {*self.statements, _CALCULATION}
         self._skip = re.compile(ignored)
         inner = [*words, *(item for item in terminals if item[0] not in opening)]
         self._token = re.compile(_alternatives(inner) + ignored)
@@ -120,13 +120,13 @@ class Machine:
         """
         make = [_maker(name, actions) for name in self._rules]
         stack: list[Any] = [self._start, None, 0]  # state, value, offset; and again
-        pattern = self._statement if self._statements <= terminals.keys() else self._token
+        pattern = self._statement if self.statements <= terminals.keys() else self._token
         for kind, word, start in self._tokens(text, pattern, gaps):
             action = stack[-3].get(kind)
             if action is _GROW and kind in terminals:  # most tokens; 5 % of the time of reading
                 stack[-2].append(terminals[kind](word, start))
             elif not self._take(stack, make, terminals, kind, word, start):
-                for part in self._parts(text, start, start + len(word)):
+                for part in self.parts(text, start, start + len(word)):
                     self._take(stack, make, terminals, *part)
         return stack[-2]
 
@@ -196,7 +196,7 @@ class Machine:
         skipped = self._skip.match(text)
         return 0 if skipped is None else skipped.end()
 
-    def _parts(self, text: str, position: int, end: int) -> Iterator[tuple[str, str, int]]:
+    def parts(self, text: str, position: int, end: int) -> Iterator[tuple[str, str, int]]:
         """The tokens of a statement, or of what looks like a calculation."""
         while position < end:
             match = self._part.match(text, position)

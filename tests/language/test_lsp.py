@@ -328,6 +328,8 @@ def test_a_question_after_a_keystroke_in_a_thousand_lines_is_answered_soon() -> 
     known = analyse("long.hymeko", text, None)
     assert known.diagnostics == []
     questions: dict[str, Callable[[Analysis], object]] = {
+        "formatting": answers.formatting,
+        "diagnostics": lambda document: analyse("long.hymeko", document.text, known),
         "completion": lambda document: answers.completion(document, types.Position(700, 24)),
         "hover": lambda document: answers.hover(document, types.Position(400, 4)),
         "references": lambda document: answers.references(document, types.Position(400, 4)),

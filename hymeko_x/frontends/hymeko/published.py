@@ -19,7 +19,7 @@ def with_named_fields(node: Node, prototypes: Prototypes | None, *, inherits: bo
 
     One that ``inherits`` its fields from a vertex is without those that are left open there.
     """
-    if prototypes is None or not any(isinstance(item, ArcItem | Field) and _is_published(item) for item in node.items):
+    if prototypes is None or not any(map(_is_published, node.items)):
         return node
     found: list[Item] = []
     for item in node.items:
@@ -36,14 +36,16 @@ def with_named_fields(node: Node, prototypes: Prototypes | None, *, inherits: bo
     return node._replace(items=tuple(item for item in _last_ones(found) if not (isinstance(item, Node) and item.name in given & _FIELDS)))
 
 
-def _is_published(item: ArcItem | Field) -> bool:
+def _is_published(item: Item) -> bool:
     if isinstance(item, Field):
         return _is_open(item.value)
-    return item.role in _FIELDS or (item.weight is not None and len(item.weight) == 1 and isinstance(item.weight[0], str))
+    return isinstance(item, ArcItem) and (
+        item.role in _FIELDS or (item.weight is not None and len(item.weight) == 1 and isinstance(item.weight[0], str))
+    )
 
 
 def _is_open(value: Value | None) -> bool:
-    return isinstance(value, Query) or (is_list(value) and any(map(_is_open, value)))
+    return isinstance(value, Query) or (is_list(value) and any(_is_open(part) for part in value if type(part) is not float))
 
 
 def _last_ones(items: list[Item]) -> list[Item]:

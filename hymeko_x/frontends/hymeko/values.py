@@ -70,7 +70,8 @@ class ValueReader(Struct):
         """A list of numbers in SI, of the given length if there is one."""
         if not is_list(value):
             raise self.refuse(item, f"{name_of(item)} takes a list of numbers, not {describe(value)}", hint=_hint(value))
-        values = tuple(self.number(part, dimension, item) for part in value)
+        factor = self.units.get(dimension, 1.0)
+        values = tuple([part * factor if type(part) is float else self.number(part, dimension, item) for part in value])
         if count is not None and len(values) != count:
             raise self.refuse(item, f"{name_of(item)} takes {count} numbers, not {len(values)}")
         return values

@@ -27,7 +27,7 @@ BLANKS, GAP, FIRST_GAP = "BLANKS", "GAP", "FIRST-GAP"
 
 
 class Before(Enum):
-    """What stands before: a word, behind which another word needs a blank; a sign, a direction; or a sign to which the next word is joined."""
+    """A word, behind which another word needs a blank; a sign; a direction; or a sign to which the next word is joined."""
 
     WORD = "w"
     SIGN = "s"
