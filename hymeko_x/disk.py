@@ -45,23 +45,21 @@ def open_source(
     files = DiskFiles(Path(path).parent, packages or {}, search_path, confine)
     beside = f"{path}{KEPT_SUFFIX}"
     kept = Kept(_read(beside, confine).decode("utf-8", "replace"), beside) if _is_file(beside) else None
-    return Source(path, _read(path, confine), files, kept=kept, originals=_originals(Path(f"{path}{KEPT_FOLDER}")))
+    return Source(path, _read(path, confine), files, kept=kept, originals=_originals(f"{path}{KEPT_FOLDER}"))
 
 
 def _is_file(path: str) -> bool:
     """Whether there is such a file, on the disk or in an archive."""
-    within = archives.inside(Path(path))
-    return Path(path).is_file() if within is None else within.name in archives.names_in(within.archive)
+    within = archives.inside(path)
+    return os.path.isfile(path) if within is None else within.name in archives.names_in(within.archive)
 
 
-def _originals(folder: Path) -> dict[str, str]:
+def _originals(folder: str) -> dict[str, str]:
     """The files in a folder of originals, by their paths below it."""
     within = archives.inside(folder)
     if within is not None:
         start, names = f"{within.name}/", sorted(archives.names_in(within.archive))
         return {name.removeprefix(start): f"{within.archive}/{name}" for name in names if name.startswith(start) and not name.endswith("/")}
-    if not folder.is_dir():
-        return {}
     found = (Path(place, name) for place, _, names in os.walk(folder) for name in names)
     return {path.relative_to(folder).as_posix(): str(path) for path in sorted(found)}
 
@@ -69,7 +67,7 @@ def _originals(folder: Path) -> dict[str, str]:
 def _read(path: str, confine: Path | None) -> bytes:
     """The content of a file, on the disk or in an archive. Raises: Refusal."""
     _check(path, confine)
-    within, origin = archives.inside(Path(path)), Origin(path)
+    within, origin = archives.inside(path), Origin(path)
     try:
         return _content(Path(path), origin) if within is None else archives.read_inside(*within)
     except (OSError, ValueError) as error:
@@ -78,17 +76,18 @@ def _read(path: str, confine: Path | None) -> bytes:
 
 def _check(path: str, confine: Path | None) -> None:
     """Raises: Refusal where a file, or the archive that has it, is none that may be read."""
-    within, origin = archives.inside(Path(path)), Origin(path)
-    place = Path(path if within is None else within.archive)
+    within, origin = archives.inside(path), Origin(path)
+    place = path if within is None else within.archive
     try:
-        if place.is_dir():
-            raise refuse(codes.CANNOT_READ, "this is a folder, and a file was expected", origin)
-        if place.is_char_device() or place.is_block_device() or (confine is not None and place.exists() and not place.is_file()):
-            raise refuse(codes.CANNOT_READ, "this is a device or a pipe, and a file was expected", origin)
-        if confine is not None and not place.resolve().is_relative_to(confine.resolve()):
+        if confine is not None and not Path(place).resolve().is_relative_to(confine.resolve()):
             raise refuse(codes.CANNOT_READ, f"the file is outside '{confine}', to which reading is confined", origin)
-        if place.stat().st_size > MOST_BYTES:
-            raise refuse(codes.TOO_LARGE, f"the file has {place.stat().st_size} bytes; at most {MOST_BYTES} are read", origin)
+        found = os.stat(place)
+        if stat.S_ISDIR(found.st_mode):
+            raise refuse(codes.CANNOT_READ, "this is a folder, and a file was expected", origin)
+        if not stat.S_ISREG(found.st_mode) and (confine is not None or not stat.S_ISFIFO(found.st_mode)):
+            raise refuse(codes.CANNOT_READ, "this is a device or a pipe, and a file was expected", origin)
+        if found.st_size > MOST_BYTES:
+            raise refuse(codes.TOO_LARGE, f"the file has {found.st_size} bytes; at most {MOST_BYTES} are read", origin)
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_READ, f"cannot be read: {_reason(error)}", origin) from error
 
@@ -183,7 +182,7 @@ def _write_stream(package: Package, target: Path) -> None:
 
 def _remove_others(folder: Path, originals: Mapping[str, str]) -> None:
     """Remove what an earlier run has kept in the folder of originals, and this one does not. Raises: OSError."""
-    for name, path in _originals(folder).items():
+    for name, path in _originals(str(folder)).items():
         if name not in originals and not name.endswith(".part"):
             Path(path).unlink()
     for place, _, _ in sorted(os.walk(folder), reverse=True):

@@ -44,11 +44,12 @@ def is_archive(path: str) -> bool:
     return path.lower().endswith(formats.archive_suffixes())
 
 
-def inside(path: Path) -> Inside | None:
+def inside(place: str | Path) -> Inside | None:
     """The archive on the disk through which a path leads, and the name in it; None where there is none."""
-    text = str(path).lower()
+    text = str(place).lower()
     if not any(suffix in text for suffix in formats.archive_suffixes()):
         return None
+    path = Path(place)
     above = next((folder for folder in path.parents if is_archive(folder.name) and folder.is_file()), None)
     return None if above is None else Inside(str(above), os.path.normpath(path.relative_to(above)).replace(os.sep, "/"))
 

@@ -18,7 +18,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Container, Iterator
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id
@@ -96,7 +96,15 @@ class Node:
         """The value of an attribute, or None when there is none."""
         return self.attributes.pop(attribute, None)
 
-    def take_child(self, *tags: str) -> Node | None:
+    def take_child(self, tag: str) -> Node | None:
+        """The first unread child of this name, or None."""
+        for child in self.children:
+            if child.tag == tag and not child.taken:
+                child.taken = True
+                return child
+        return None
+
+    def take_child_of(self, tags: Container[str]) -> Node | None:
         """The first unread child with one of these names, or None."""
         for child in self.children:
             if child.tag in tags and not child.taken:

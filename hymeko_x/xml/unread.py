@@ -77,11 +77,12 @@ class Unread:
         stack = [node]
         while stack:
             member = stack.pop()
-            read = [child for child in member.children if child.taken]
-            stack += read
-            if len(read) < len(member.children):
+            taken = [child for child in member.children if child.taken] if member.children else member.children
+            stack += taken
+            if len(taken) < len(member.children):
                 with_unread_children.append(member)
-            if member.attributes or member.text is not None or len(read) < len(member.children):
+                self._keep(member)
+            elif member.attributes or member.text is not None:
                 self._keep(member)
         return with_unread_children
 

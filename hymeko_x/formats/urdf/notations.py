@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from enum import Enum
+from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -63,6 +64,7 @@ DYNAMICS, SCALE, NO_AXIS = "dynamics", "scale", "no-axis"
 """Habits of joints and shapes: zeros and ones are written; the axis x is left out."""
 
 
+@cache
 def origin_habits(tag: str) -> tuple[str, str, str]:
     """The habits of <origin> in such an element: it is written where it is the identity; its zero xyz, or rpy, is left out."""
     return tag, f"no-{tag}-xyz", f"no-{tag}-rpy"

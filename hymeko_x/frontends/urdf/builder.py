@@ -58,7 +58,7 @@ class UrdfBuilder(Builder):
     actuators: dict[str, Id] = field(default_factory=dict)
     drives: dict[str, Id] = field(default_factory=dict)
     choices: dict[Notation[Any], dict[Id, Enum]] = field(default_factory=dict)
-    habits: dict[str, tuple[list[Id], list[Id]]] = field(default_factory=dict)
+    habits: list[tuple[str, bool, Id]] = field(default_factory=list)
     usual: dict[Notation[Any], Enum] = field(default_factory=dict)
     version: str = "1.0"
 
@@ -91,14 +91,15 @@ class UrdfBuilder(Builder):
 
     def follow(self, key: Id, habit: str, *, follows: bool) -> None:
         """Keep whether an element with a default value follows a habit."""
-        self.habits.setdefault(habit, ([], []))[follows].append(key)
+        self.habits.append((habit, follows, key))
 
     def _settle_habits(self) -> frozenset[str]:
         """The habits that most elements follow; those that do otherwise get a note."""
-        found = frozenset(habit for habit, (others, followers) in self.habits.items() if len(followers) > len(others))
+        votes = Counter([(habit, follows) for habit, follows, _ in self.habits])
+        found = frozenset(habit for habit, follows in votes if follows and votes[habit, True] > votes[habit, False])
         otherwise: dict[Id, list[str]] = {}
-        for habit, sides in self.habits.items():
-            for key in sides[habit not in found]:
+        for habit, follows, key in self.habits:
+            if follows != (habit in found):
                 otherwise.setdefault(key, []).append(habit)
         for key, habits in otherwise.items():
             self.note(key, notations.OTHERWISE, tuple(sorted(habits)))
@@ -154,16 +155,17 @@ def read_origin(node: Node, key: Id, builder: UrdfBuilder, *, turned: bool = Tru
     if origin is None:
         builder.follow(key, is_written, follows=False)
         return IDENTITY
-    missing = {name for name in ("xyz", "rpy") if name not in origin.attributes}
+    lacks_xyz, lacks_rpy = "xyz" not in origin.attributes, "rpy" not in origin.attributes
     xyz = _take_vector(origin, "xyz", builder)
     unturned = not turned and read_numbers(origin.attributes.get("rpy", "")) != ZERO
     found = Pose(xyz) if unturned else _turned(origin, xyz, builder)
-    if found == IDENTITY and found.written is None:
+    is_in_place, is_unturned = found.xyz == ZERO, found.written is None and found.quat == NO_ROTATION
+    if is_in_place:
+        builder.follow(key, no_xyz, follows=lacks_xyz)
+    if is_unturned:
+        builder.follow(key, no_rpy, follows=lacks_rpy)
+    if is_in_place and is_unturned:
         builder.follow(key, is_written, follows=True)
-    if found.xyz == ZERO:
-        builder.follow(key, no_xyz, follows="xyz" in missing)
-    if found.quat == NO_ROTATION and found.written is None:
-        builder.follow(key, no_rpy, follows="rpy" in missing)
     return found
 
 

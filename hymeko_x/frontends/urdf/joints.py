@@ -70,7 +70,8 @@ def _has_ends(node: Node, builder: UrdfBuilder) -> bool:
 
 
 def _names_link(joint: Node, tag: str) -> bool:
-    return next(("link" in child.attributes for child in joint.children if child.tag == tag), False)
+    end = joint.child(tag)
+    return end is not None and "link" in end.attributes
 
 
 def _read_end(joint: Node, tag: str, builder: UrdfBuilder) -> Id:

@@ -110,7 +110,7 @@ def _read_geometry(shape: Node, key: Id, builder: UrdfBuilder) -> tuple[Geometry
     if node is None:
         _warn_empty(shape, f"<{shape.tag}> has no <geometry>", builder)
         return NoShape(), None
-    found = node.take_child(*_GEOMETRIES)
+    found = node.take_child_of(_GEOMETRIES)
     if found is None:
         tags = ", ".join(f"<{child.tag}>" for child in node.unread_children())
         known = ", ".join(f"<{tag}>" for tag in _GEOMETRIES)
