@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.multibody import Multibody
+    from hymeko_x.ir import parts
     from hymeko_x.ir.holder import Holder
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files
@@ -66,8 +67,9 @@ def _report_left_out(found: Multibody, report: Report) -> None:
     robot, tree = found.mechanism, found.tree
     words = [(key, f"{key} is a loop of a kind") for key in closures_of(robot, tree)[1]]
     words += [(key, f"{key} couples along a path, or by a polynomial of several coordinates") for key in followers_of(robot, tree)[1]]
-    words += [(key, f"{key} pulls along a path or with a law") for key in cables_of(robot, tree)[1]]
-    words += [(key, f"{key} has a law or an end") for key in (motors_of(robot, tree)[1] if found.motors is not None else [])]
+    words += [(key, f"{key} {why}") for key, why in cables_of(robot, tree)[1]]
+    words += [(key, f"{key} {why}") for key, why in (motors_of(robot, tree)[1] if found.motors is not None else [])]
+    words += [(key, f"{key} has {what}") for key, tendon, _ in robot.edges(parts.Tendon) for what in _unmodelled(tendon)]
     for key, joint, _ in robot.edges(parts.Joint):
         if any(dof.friction for dof in joint.dofs):
             words.append((key, f"{key} has Coulomb friction"))
@@ -75,6 +77,11 @@ def _report_left_out(found: Multibody, report: Report) -> None:
             words.append((key, f"{key} has a spring on a ball"))
     for key, what in words:
         report.warn(codes.NO_FORM, f"{what}, which is not in the equations", robot.origin(key), element=str(key))
+
+
+def _unmodelled(tendon: parts.Tendon) -> list[str]:
+    """What a tendon does besides pulling as a spring and a damper."""
+    return ["Coulomb friction"] * bool(tendon.friction) + ["an armature"] * bool(tendon.armature)
 
 
 def _with_inertias(robot: Mechanism, files: Files | None, report: Report | None) -> Mechanism:

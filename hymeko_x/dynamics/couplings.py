@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from graphlib import CycleError, TopologicalSorter
 from itertools import zip_longest
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -9,7 +10,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes, formats
 from hymeko_x.diagnostics import refuse
-from hymeko_x.dynamics.drives import terms_of
+from hymeko_x.dynamics.lines import terms_of
 from hymeko_x.dynamics.numbers import add, times
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import numbers_weight
@@ -17,7 +18,7 @@ from hymeko_x.ir.mechanism import numbers_weight
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from hymeko_x.dynamics.drives import Terms
+    from hymeko_x.dynamics.lines import Terms
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
     from hymeko_x.dynamics.tree import Link, Tree
     from hymeko_x.ir.ids import Id
@@ -128,17 +129,17 @@ def _leads(link: int, followers: list[int], found: Mapping[int, Follower]) -> bo
     return False
 
 
-def _ordered(mechanism: Mechanism, tree: Tree, left: dict[int, Follower]) -> tuple[Follower, ...]:
-    ordered: list[Follower] = []
-    while left:
-        ready = [place for place, follower in left.items() if not any(leader in left for leader, _ in follower.leaders)]
-        if not ready:
-            names = ", ".join(str(tree.links[place].joint) for place in left)
-            joint = tree.links[next(iter(left))].joint
-            message = f"{names} follow each other in a circle; their positions form an algebraic loop"
-            raise refuse(codes.ALGEBRAIC_LOOP, message, mechanism.origin(joint), element=str(joint))
-        ordered += [left.pop(place) for place in ready]
-    return tuple(ordered)
+def _ordered(mechanism: Mechanism, tree: Tree, left: Mapping[int, Follower]) -> tuple[Follower, ...]:
+    """The followers, each behind those that it follows."""
+    order = TopologicalSorter({place: [leader for leader, _ in follower.leaders] for place, follower in left.items()})
+    try:
+        return tuple(left[place] for place in order.static_order() if place in left)
+    except CycleError as error:
+        circle = error.args[1][1:]
+        names = ", ".join(str(tree.links[place].joint) for place in sorted(circle))
+        joint = tree.links[min(circle)].joint
+        message = f"{names} follow each other in a circle; their positions form an algebraic loop"
+        raise refuse(codes.ALGEBRAIC_LOOP, message, mechanism.origin(joint), element=str(joint)) from error
 
 
 def independent(tree: Tree, followers: Sequence[Follower]) -> list[Link]:

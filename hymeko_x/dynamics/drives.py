@@ -1,194 +1,213 @@
-"""Tendons and actuators along linear combinations of joints: lengths, the springs and dampers of tendons, and the laws of actuators."""
+"""Tendons and actuators: the springs and dampers of tendons, and what actuators do under their controls, by their laws."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
+from msgspec.structs import replace
 
-from hymeko_x.dynamics.numbers import add, times
+from hymeko_x.dynamics.laws import Law, damped, law_of
+from hymeko_x.dynamics.lines import Line, Stretch, geared, path_of, push_of, seats_of, stretches, terms_of
+from hymeko_x.dynamics.numbers import add, dot, factorize, floats, solve, times
+from hymeko_x.dynamics.recursion import Constants, mass_matrix
 from hymeko_x.ir import parts
-from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind
+from hymeko_x.ir.tendons import FIXED
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
-    from hymeko_x.dynamics.numbers import Number, Numbers
+    from hymeko_x.dynamics.lines import Seats
+    from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
     from hymeko_x.dynamics.tree import Tree
     from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
-    Terms = tuple[tuple[int, float], ...]
+    Left = list[tuple[Id, str]]
+    """Elements that are not in the equations, each with the reason."""
 
 
 class Cable(Struct, frozen=True):
-    """A tendon with the length sum of coefficient * position over links of one coordinate: a spring and a damper along it."""
+    """A tendon that pulls: a damper along it, and a spring that does nothing at lengths between the two of ``rest``."""
 
     id: Id
-    terms: Terms
+    line: Line
     stiffness: float
     damping: float
-    rest: float
+    rest: tuple[float, float]
 
 
 class Motor(Struct, frozen=True):
-    """An actuator along the length of its terms: force = gain * control + bias[0] + bias[1] * length + bias[2] * rate."""
+    """An actuator that acts along a line by its law; ``unit`` is that of its control, "" where it follows from nothing."""
 
     id: Id
-    terms: Terms
-    gain: float
-    bias: tuple[float, float, float]
+    line: Line
+    law: Law
     unit: str
 
 
 # ---- from the mechanism ------------------------------------------------------------------------------------------------------------
 
 
-def terms_of(mechanism: Mechanism, tree: Tree, arcs: Sequence[RobotArc]) -> Terms | None:
-    """The links of one coordinate that arcs lead to, with the first number of their weights; None where an arc leads elsewhere."""
-    found = []
-    for arc in arcs:
-        dof = dof_at(mechanism.graph.edges, arc)
-        if dof is None or (arc.target, dof[0]) not in tree.places:
-            return None
-        found.append((tree.places[arc.target, dof[0]], (numbers_weight(arc) or (1.0,))[0]))
-    return tuple(found)
-
-
-def cables_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Cable, ...], list[Id]]:
-    """The tendons that are linear in the joints and pull, and those that pull and have no equations here."""
+def cables_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Cable, ...], Left]:
+    """The tendons that pull, and those that do and have no equations here."""
+    seats = seats_of(mechanism, tree)
     found, left = [], []
     for key, tendon, arcs in mechanism.edges(parts.Tendon):
         if not tendon.stiffness and not tendon.damping:
             continue
-        terms = terms_of(mechanism, tree, arcs) if tendon.kind == "fixed" else None
-        rest = None if terms is None else _rest(tendon, terms, tree)
-        if terms is None or rest is None:
-            left.append(key)
+        line = line_of(mechanism, tree, tendon, arcs, seats)
+        if isinstance(line, str):
+            left.append((key, line))
         else:
-            found.append(Cable(key, terms, tendon.stiffness, tendon.damping, rest))
+            found.append(Cable(key, line, tendon.stiffness, tendon.damping, _rest(tendon, line, tree)))
     return tuple(found), left
 
 
-def _rest(tendon: parts.Tendon, terms: Terms, tree: Tree) -> float | None:
-    """The length at rest: ``springlength``, else that at the rests of the joints' springs, as in MuJoCo; None for an interval."""
+def line_of(mechanism: Mechanism, tree: Tree, tendon: parts.Tendon, arcs: Sequence[RobotArc], seats: Seats) -> Line | str:
+    """The line of a tendon; as text the reason why there is none."""
+    if tendon.kind != FIXED:
+        return path_of(mechanism, arcs, seats)
+    terms = terms_of(mechanism, tree, arcs)
+    return "combines what is no coordinate of a joint" if terms is None else Line(terms)
+
+
+def _rest(tendon: parts.Tendon, line: Line, tree: Tree) -> tuple[float, float]:
+    """The lengths at rest: ``springlength``, else that at the rests of the joints' springs, as in MuJoCo."""
     given = dict(tendon.parameters).get("springlength", -1.0)
-    ends = {float(value) for value in (given if isinstance(given, tuple) else (given,))}
-    if ends == {-1.0} or not tendon.stiffness:
-        return sum(factor * tree.links[place].dof.spring_ref for place, factor in terms)
-    return ends.pop() if len(ends) == 1 else None
+    ends = tuple(map(float, given if isinstance(given, tuple) else (given,)))
+    if set(ends) != {-1.0}:
+        return ends[0], ends[-1]
+    q = list(tree.rest)
+    for link in tree.links:
+        if link.coordinates == 1:
+            q[link.q] = link.dof.spring_ref
+    length = float(stretches([line], Constants(tree, floats()), q)[0].length)
+    return length, length
 
 
-def motors_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Motor, ...], list[Id]]:
-    """The actuators of joints and of tendons that are linear in joints, with laws of :func:`_law`; and all others."""
-    tendons = {key: arcs for key, tendon, arcs in mechanism.edges(parts.Tendon) if tendon.kind == "fixed"}
-    driven = {arc.target: (drive, arcs) for _, drive, arcs in mechanism.edges(parts.Drive) for arc in arcs if arc.sign > 0}
+def motors_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Motor, ...], Left]:
+    """The actuators that act along a line by a law; and all others."""
+    driven = {arc.target: arcs for _, _, arcs in mechanism.edges(parts.Drive) for arc in arcs if arc.sign > 0}
+    seats = seats_of(mechanism, tree)
     found, left = [], []
     for key, actuator in mechanism.vertices(parts.Actuator):
-        drive, arcs = driven.get(key, (None, ()))
-        ends = [arc for arc in arcs if arc.sign < 0]
-        law = _law(actuator)
-        terms = None
-        if drive is not None and not drive.kind and len(ends) == 1:
-            gear = (numbers_weight(ends[0]) or (1.0,))[0]
-            terms = terms_of(mechanism, tree, tendons.get(ends[0].target, ends))
-            if terms is not None and ends[0].target in tendons:
-                terms = tuple((place, gear * factor) for place, factor in terms)
-        if terms is None or law is None:
-            left.append(key)
+        law = law_of(actuator)
+        line = _driven_line(mechanism, tree, driven[key], seats) if key in driven else "drives nothing"
+        if isinstance(law, str) or isinstance(line, str):
+            left.append((key, law if isinstance(law, str) else str(line)))
+        elif line.push is not None and any(law.gain[1:] + law.bias[1:]):
+            left.append((key, "depends on the length of what it drives, which has none"))
         else:
-            found.append(Motor(key, terms, *law, _unit(actuator, terms, tree)))
-    return tuple(found), left
+            found.append(Motor(key, line, law, _unit(actuator, line, tree)))
+    return _with_damping(found, tree), left
 
 
-def _law(actuator: parts.Actuator) -> tuple[float, tuple[float, float, float]] | None:
-    """Gain and bias of a motor, a position or velocity servo, or a general actuator without state; None for other laws."""
-    given = dict(actuator.parameters)
-    if actuator.kind in ("motor", "transmission"):
-        return 1.0, (0.0, 0.0, 0.0)
-    if actuator.kind == "position" and not {"dampratio", "timeconst", "inheritrange"} & set(given):
-        kp = _number(given, "kp", 1.0)
-        return kp, (0.0, -kp, -_number(given, "kv", 0.0))
-    if actuator.kind == "velocity":
-        kv = _number(given, "kv", 1.0)
-        return kv, (0.0, 0.0, -kv)
-    if actuator.kind != "general":
-        return None
-    kinds = tuple(given.get(name, default) for name, default in (("dyntype", "none"), ("gaintype", "fixed"), ("biastype", "none")))
-    if kinds[:2] != ("none", "fixed") or kinds[2] not in ("none", "affine"):
-        return None
-    bias = (*_numbers(given, "biasprm"), 0.0, 0.0, 0.0)[:3] if kinds[2] == "affine" else (0.0, 0.0, 0.0)
-    return _number(given, "gainprm", 1.0), bias  # type: ignore[return-value]
+def _driven_line(mechanism: Mechanism, tree: Tree, arcs: Sequence[RobotArc], seats: Seats) -> Line | str:
+    """What an actuator acts along; as text the reason why there is no such line."""
+    ends = [arc for arc in arcs if arc.sign < 0]
+    if len(ends) != 1:
+        return "drives between two frames"
+    edge = mechanism.graph.edges.get(ends[0].target)
+    if edge is not None and isinstance(edge.data, parts.Tendon):
+        line = line_of(mechanism, tree, edge.data, edge.arcs, seats)
+        gear = (numbers_weight(ends[0]) or (1.0,))[0]
+        return f"pulls {ends[0].target}, which {line}" if isinstance(line, str) else geared(line, gear)
+    if ends[0].target.kind == "frame":
+        return push_of(ends[0], seats)
+    terms = terms_of(mechanism, tree, ends)
+    return f"drives {ends[0].target}, which has more than one coordinate or none" if terms is None else Line(terms)
 
 
-def _numbers(given: Mapping[str, object], name: str) -> tuple[float, ...]:
-    value = given.get(name, ())
-    return tuple(map(float, value)) if isinstance(value, tuple) else (float(value),)  # type: ignore[arg-type]
+def _with_damping(motors: Sequence[Motor], tree: Tree) -> tuple[Motor, ...]:
+    """The motors with damping ratios as damping: at the mass 1 / (r M^-1 r') that each feels in the configuration of reference."""
+    if not any(motor.law.damping_ratio for motor in motors):
+        return tuple(motors)
+    constants = Constants(tree, floats())
+    factors = factorize(mass_matrix(constants, tree.rest))
+    rows = [stretch.row for stretch in stretches([motor.line for motor in motors], constants, tree.rest)]
+    return tuple(_damped(motor, [row.get(k, 0) for k in range(tree.nv)], factors) for motor, row in zip(motors, rows, strict=True))
 
 
-def _number(given: Mapping[str, object], name: str, default: float) -> float:
-    return (*_numbers(given, name), default)[0]
+def _damped(motor: Motor, row: list[Number], factors: tuple[Matrix, list[Number]]) -> Motor:
+    ease = float(dot(row, solve(factors, row))) if motor.law.damping_ratio else 0.0
+    return replace(motor, law=damped(motor.law, 1.0 / ease)) if ease > 0.0 else motor
 
 
-def _unit(actuator: parts.Actuator, terms: Terms, tree: Tree) -> str:
+def _unit(actuator: parts.Actuator, line: Line, tree: Tree) -> str:
     """The unit of the control of a joint's actuator; "" where it follows from nothing."""
-    if len(terms) != 1 or actuator.kind == "general":
+    if len(line.terms) != 1 or actuator.kind in ("general", "damper", "cylinder"):
         return ""
-    slides = tree.links[terms[0][0]].dof.kind is DofKind.SLIDE
+    slides = tree.links[line.terms[0][0]].dof.kind is DofKind.SLIDE
     effort, position = ("N", "m") if slides else ("N*m", "rad")
-    return {"position": position, "velocity": f"{position}/s"}.get(actuator.kind, effort)
+    return {"position": position, "velocity": f"{position}/s", "intvelocity": f"{position}/s"}.get(actuator.kind, effort)
 
 
 # ---- forces ------------------------------------------------------------------------------------------------------------------------
 
 
-def pull_cables(
-    forces: list[Number], cables: Sequence[Cable], tree: Tree, q: Sequence[Number], v: Sequence[Number], numbers: Numbers
-) -> None:
+def pull_cables(forces: list[Number], cables: Sequence[Cable], constants: Constants, q: Sequence[Number], v: Sequence[Number]) -> None:
     """Add what the springs and dampers of tendons do to the forces of all coordinates."""
-    for cable in cables:
-        length, rate = _motion(cable.terms, tree, q, v, numbers)
-        stretch = add(length, numbers.exact(-cable.rest)) if cable.rest else length
-        force = add(times(numbers.exact(-cable.stiffness), stretch), times(numbers.exact(-cable.damping), rate))
-        _act(forces, cable.terms, force, tree, numbers)
+    numbers = constants.numbers
+    for cable, stretch in zip(cables, stretches([cable.line for cable in cables], constants, q), strict=True):
+        spring = times(numbers.exact(-cable.stiffness), elongation(cable, stretch.length, numbers))
+        _act(forces, stretch, add(spring, times(numbers.exact(-cable.damping), stretch.rate(v))))
+
+
+def elongation(cable: Cable, length: Number, numbers: Numbers) -> Number:
+    """How far the length (m or rad) is above or below those at rest."""
+    lower, upper = cable.rest
+    over = add(length, numbers.exact(-upper)) if upper else length
+    if lower == upper:
+        return over
+    under = add(length, numbers.exact(-lower)) if lower else length
+    size = numbers.functions["abs"]
+    return (over + size(over) + under - size(under)) / 2
 
 
 def drive(
     forces: list[Number],
     motors: Sequence[Motor],
-    controls: Sequence[Number],
-    tree: Tree,
+    signals: Sequence[Number],
+    constants: Constants,
     q: Sequence[Number],
     v: Sequence[Number],
-    numbers: Numbers,
 ) -> None:
-    """Add what the actuators do under their controls to the forces of all coordinates."""
-    for motor, control in zip(motors, controls, strict=True):
-        length, rate = _motion(motor.terms, tree, q, v, numbers)
-        force = times(numbers.exact(motor.gain), control)
-        for factor, value in zip(motor.bias, (1, length, rate), strict=True):
-            force = add(force, times(numbers.exact(factor), value))
-        _act(forces, motor.terms, force, tree, numbers)
+    """Add what the actuators do under their signals to the forces of all coordinates."""
+    numbers = constants.numbers
+    found = stretches([motor.line for motor in motors], constants, q)
+    for motor, signal, stretch in zip(motors, signals, found, strict=True):
+        along = (1, stretch.length, stretch.rate(v))
+        gain, bias = (dot([numbers.exact(x) if x else 0 for x in part], along) for part in (motor.law.gain, motor.law.bias))
+        _act(forces, stretch, add(times(gain, signal), bias))
 
 
-def length_of(terms: Terms, tree: Tree, q: Sequence[Number], numbers: Numbers) -> Number:
-    """The sum of coefficient * position."""
-    length: Number = 0
-    for place, factor in terms:
-        length = add(length, times(numbers.exact(factor), q[tree.links[place].q]))
-    return length
+def _act(forces: list[Number], stretch: Stretch, force: Number) -> None:
+    for column, slope in stretch.row.items():
+        forces[column] = add(forces[column], times(slope, force))
 
 
-def _motion(terms: Terms, tree: Tree, q: Sequence[Number], v: Sequence[Number], numbers: Numbers) -> tuple[Number, Number]:
-    rate: Number = 0
-    for place, factor in terms:
-        rate = add(rate, times(numbers.exact(factor), v[tree.links[place].v]))
-    return length_of(terms, tree, q, numbers), rate
+# ---- states ------------------------------------------------------------------------------------------------------------------------
 
 
-def _act(forces: list[Number], terms: Terms, force: Number, tree: Tree, numbers: Numbers) -> None:
-    for place, factor in terms:
-        column = tree.links[place].v
-        forces[column] = add(forces[column], times(numbers.exact(factor), force))
+def remembering(motors: Sequence[Motor] | None) -> list[Motor]:
+    """The motors with a state of their own."""
+    return [motor for motor in motors or () if motor.law.lag is not None]
+
+
+def signals_of(motors: Sequence[Motor], states: Sequence[Number], controls: Sequence[Number]) -> list[Number]:
+    """What the force of each motor follows: its state, or its control where it has none."""
+    rest: Iterator[Number] = iter(states)
+    return [control if motor.law.lag is None else next(rest) for motor, control in zip(motors, controls, strict=True)]
+
+
+def state_rates(motors: Sequence[Motor], states: Sequence[Number], controls: Sequence[Number], numbers: Numbers) -> list[Number]:
+    """How the states of motors change under all controls."""
+    own: Mapping[Id, Number] = {motor.id: control for motor, control in zip(motors, controls, strict=True)}
+    return [_state_rate(motor.law, state, own[motor.id], numbers) for motor, state in zip(remembering(motors), states, strict=True)]
+
+
+def _state_rate(law: Law, state: Number, control: Number, numbers: Numbers) -> Number:
+    return (control - state) / numbers.exact(law.lag) if law.lag else control

@@ -17,7 +17,8 @@ from msgspec import Struct
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.couplings import expanded, independent
-from hymeko_x.dynamics.drives import length_of
+from hymeko_x.dynamics.drives import elongation
+from hymeko_x.dynamics.lines import stretches
 from hymeko_x.dynamics.numbers import add, dot, factorize, graphs, solve, symbols, times
 from hymeko_x.dynamics.recursion import Constants, mass_matrix
 from hymeko_x.dynamics.spatial import composed, minus, plus, scaled, skew, turned
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from hymeko_x.dynamics.drives import Terms
     from hymeko_x.dynamics.loops import Closing
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
     from hymeko_x.dynamics.spatial import Frame
@@ -89,8 +89,8 @@ class MechanicalHamiltonian(Struct, frozen=True, dict=True):
         constants = Constants(found.tree, numbers, found.gravity)
         whole = expanded(found.tree, found.followers, q, [0] * len(p), numbers)
         mass = reduced(mass_matrix(constants, whole.q), whole)
-        resistance = reduced(_damping(found, numbers), whole)
-        driven = _driven(found, numbers)
+        resistance = reduced(_damping(found, constants, whole.q), whole)
+        driven = _driven(found, constants, whole.q)
         columns = [[dot(column, force) for column in zip(*whole.ratios, strict=True)] for force in driven]
         width = len(q) + len(p)
         r: Matrix = [[0] * width for _ in q] + [[*[0] * len(q), *row] for row in resistance]
@@ -238,45 +238,42 @@ def _potential(found: Trees, constants: Constants, q: Sequence[Number], numbers:
         if link.dof.stiffness and link.coordinates == 1:
             stretch = add(q[link.q], numbers.exact(-link.dof.spring_ref))
             energy = add(energy, times(numbers.exact(link.dof.stiffness) / 2, times(stretch, stretch)))
-    for cable in found.cables:
-        stretch = add(length_of(cable.terms, found.tree, q, numbers), numbers.exact(-cable.rest))
+    for cable, along in zip(found.cables, stretches([cable.line for cable in found.cables], constants, q), strict=True):
+        stretch = elongation(cable, along.length, numbers)
         energy = add(energy, times(numbers.exact(cable.stiffness) / 2, times(stretch, stretch)))
-    for motor in found.motors or ():
-        length = length_of(motor.terms, found.tree, q, numbers)
-        constant, slope = (numbers.exact(value) for value in motor.bias[:2])
-        energy = add(energy, minus(add(times(constant, length), times(slope / 2, times(length, length)))))
+    motors = found.motors or ()
+    for motor, along in zip(motors, stretches([motor.line for motor in motors], constants, q), strict=True):
+        offset, slope = (numbers.exact(value) if value else 0 for value in motor.law.bias[:2])
+        energy = add(energy, minus(add(times(offset, along.length), times(slope, times(along.length, along.length)) / 2)))
     return energy
 
 
-def _damping(found: Trees, numbers: Numbers) -> Matrix:
+def _damping(found: Trees, constants: Constants, q: Sequence[Number]) -> Matrix:
     """What resists velocities: the dampers of joints, tendons and actuators."""
-    count = found.tree.nv
+    count, numbers = found.tree.nv, constants.numbers
     matrix: Matrix = [[0] * count for _ in range(count)]
     for link in found.tree.links:
         for k in range(link.v, link.v + link.velocities):
             matrix[k][k] = numbers.exact(link.dof.damping) if link.dof.damping else 0
-    along = [(cable.terms, cable.damping) for cable in found.cables]
-    along += [(motor.terms, -motor.bias[2]) for motor in found.motors or ()]
-    for terms, damping in along:
-        row = _row(found, terms, numbers)
-        for i, a in enumerate(row):
-            matrix[i] = [add(x, times(times(numbers.exact(damping), a), b)) for x, b in zip(matrix[i], row, strict=True)]
+    along = [(cable.line, cable.damping) for cable in found.cables if cable.damping]
+    along += [(motor.line, -motor.law.bias[2]) for motor in found.motors or () if motor.law.bias[2]]
+    rows = [stretch.row for stretch in stretches([line for line, _ in along], constants, q)]
+    for row, (_, damping) in zip(rows, along, strict=True):
+        for i, a in row.items():
+            for k, b in row.items():
+                matrix[i][k] = add(matrix[i][k], times(times(numbers.exact(damping), a), b))
     return matrix
 
 
-def _row(found: Trees, terms: Terms, numbers: Numbers) -> list[Number]:
-    row: list[Number] = [0] * found.tree.nv
-    for place, factor in terms:
-        row[found.tree.links[place].v] = numbers.exact(factor)
-    return row
-
-
-def _driven(found: Trees, numbers: Numbers) -> list[list[Number]]:
+def _driven(found: Trees, constants: Constants, q: Sequence[Number]) -> list[list[Number]]:
     """The forces of all coordinates for a unit of each input."""
+    columns = range(found.tree.nv)
     if found.motors is not None:
-        return [[times(numbers.exact(motor.gain), x) for x in _row(found, motor.terms, numbers)] for motor in found.motors]
+        gains = [constants.numbers.exact(motor.law.gain[0]) for motor in found.motors]
+        along = stretches([motor.line for motor in found.motors], constants, q)
+        return [[times(gain, stretch.row.get(k, 0)) for k in columns] for gain, stretch in zip(gains, along, strict=True)]
     scalar = [link for link in independent(found.tree, found.followers) if link.velocities == 1]
-    return [[int(k == link.v) for k in range(found.tree.nv)] for link in scalar]
+    return [[int(k == link.v) for k in columns] for link in scalar]
 
 
 def _structure(links: Sequence[Link], q: Sequence[Number], p: Sequence[Number]) -> Matrix:

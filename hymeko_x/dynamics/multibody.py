@@ -8,7 +8,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.assembly import reduction
 from hymeko_x.dynamics.couplings import expanded, followers_of, independent
-from hymeko_x.dynamics.drives import cables_of, motors_of
+from hymeko_x.dynamics.drives import cables_of, motors_of, remembering
 from hymeko_x.dynamics.forms import SecondOrder
 from hymeko_x.dynamics.hamilton import MechanicalHamiltonian
 from hymeko_x.dynamics.loops import closing, closures_of
@@ -52,7 +52,11 @@ class Multibody(Trees, frozen=True, dict=True):
         return linearized(self, self.at(at))
 
     def second_order(self, at: str = "") -> SecondOrder:
-        """M d'' + C d' + K d = F u for small displacements d from an operating point."""
+        """M d'' + C d' + K d = F u for small displacements d from an operating point.
+
+        Raises: Refusal (HX408) for actuators with a state of their own.
+        """
+        self.refuse_states("second-order")
         space, point = self.state_space(at), self.at(at)
         n = len(space.states) // 2
         basis = reduction(self, point.positions).basis
@@ -62,8 +66,22 @@ class Multibody(Trees, frozen=True, dict=True):
         a, b = space.A, space.B
         return SecondOrder(space.states[:n], space.inputs, m, -m * a[n:, n:], -m * a[n:, :n], m * b[n:, :], m * space.offset[n:, :])
 
+    def refuse_states(self, form: str) -> None:
+        """Refuse (HX408) actuators with a state of their own, which a form has no place for."""
+        for motor in remembering(self.motors):
+            message = f"{motor.id} has a state of its own, which the {form} form has no place for"
+            raise refuse(codes.NO_FORM, message, self.mechanism.origin(motor.id), element=str(motor.id), hint="--form state-space has it")
+
     def port_hamiltonian(self) -> MechanicalHamiltonian:
-        """H, J, R, G over positions and momenta; closed loops are a port."""
+        """H, J, R, G over positions and momenta; closed loops are a port.
+
+        Raises: Refusal (HX408) for actuators with a state of their own, and for those whose gain changes as they move.
+        """
+        self.refuse_states("port-Hamiltonian")
+        for motor in self.motors or ():
+            if any(motor.law.gain[1:]):
+                message = f"the gain of {motor.id} changes with its length or rate, which the port-Hamiltonian form has no place for"
+                raise refuse(codes.NO_FORM, message, self.mechanism.origin(motor.id), element=str(motor.id))
         return MechanicalHamiltonian(self)
 
     # ---- closed loops ------------------------------------------------------------------------------------------------------
@@ -106,7 +124,7 @@ class Multibody(Trees, frozen=True, dict=True):
 
         signals = self.signals(duration, inputs or {})
         width = sum(link.velocities for link in independent(self.tree, self.followers))
-        start = [*self.start(at), *[0.0] * width]
+        start = [*self.start(at), *[0.0] * (width + len(remembering(self.motors)))]
         graph = self.graph
         return simulate(self.system, signals, duration, step, start, lambda x, u: np.array(graph(x, u), dtype=float).reshape(-1))
 

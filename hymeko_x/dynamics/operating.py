@@ -8,9 +8,11 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.assembly import assembled, reduction
 from hymeko_x.dynamics.couplings import independent
+from hymeko_x.dynamics.drives import remembering
 from hymeko_x.dynamics.linear import StateSpace
 from hymeko_x.dynamics.positions import moved
 from hymeko_x.dynamics.system import Variable
+from hymeko_x.dynamics.trees import activation
 from hymeko_x.ir import parts
 from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import numbers_weight
@@ -34,11 +36,15 @@ _HELD = 1e-9
 
 
 class OperatingPoint(NamedTuple):
-    """The positions of the independent coordinates, and the inputs that hold them as far as inputs can; ``rates`` is what remains."""
+    """The positions of the independent coordinates, and the inputs that hold them as far as inputs can; ``rates`` is what remains.
+
+    ``activations`` are the states of motors that hold them.
+    """
 
     positions: list[float]
     inputs: list[float]
     rates: list[float]
+    activations: list[float] = []  # noqa: RUF012
 
     @property
     def is_equilibrium(self) -> bool:
@@ -83,18 +89,32 @@ def operating_point(found: Trees, positions: Mapping[str, float], *, search: boo
     width = sum(link.velocities for link in links)
     graph, still = found.graph, np.zeros(width)
 
-    def accelerations(z: Sequence[float], u: Sequence[float]) -> Floats:
-        return np.array(graph([*z, *still], u), dtype=float)[-width:, 0]
+    def accelerations(z: Sequence[float], signals: Sequence[float]) -> Floats:
+        rates = graph([*z, *still, *_remembered(found, signals)], signals)
+        return np.array(rates, dtype=float)[len(z) : len(z) + width, 0]
 
     none = [0.0] * len(found.system.inputs)
     if search:
         z = _equilibrium(found, links, z, lambda moved: accelerations(moved, none))
-        return OperatingPoint(z, none, accelerations(z, none).tolist())
+        return OperatingPoint(z, none, accelerations(z, none).tolist(), _remembered(found, none))
     free = accelerations(z, none)
     each = np.array([accelerations(z, row.tolist()) - free for row in np.eye(len(none))]).reshape(len(none), width).T
     held = np.linalg.lstsq(each, -free, rcond=None)[0] if len(none) else np.zeros(0)
     held[np.abs(held) < 1e-12] = 0.0
-    return OperatingPoint(z, held.tolist(), (free + each @ held).tolist())
+    rates = (free + each @ held).tolist()
+    return OperatingPoint(z, _controls(found, held.tolist()), rates, _remembered(found, held.tolist()))
+
+
+def _remembered(found: Trees, signals: Sequence[float]) -> list[float]:
+    """Of the signals of all motors those that are states."""
+    return [signal for motor, signal in zip(found.motors or (), signals, strict=False) if motor.law.lag is not None]
+
+
+def _controls(found: Trees, signals: list[float]) -> list[float]:
+    """The controls under which the signals of motors stay: an integrator's is 0."""
+    if found.motors is None:
+        return signals
+    return [0.0 if motor.law.lag == 0.0 else signal for motor, signal in zip(found.motors, signals, strict=True)]
 
 
 def start_of(found: Trees, positions: Mapping[str, float], *, keep: bool = True) -> list[float]:
@@ -154,31 +174,43 @@ def displacements(links: Sequence[Link]) -> tuple[Variable, ...]:
 def linearized(found: Trees, point: OperatingPoint) -> StateSpace:
     """The linear system at an operating point: states are displacements and velocities from there, inputs count from what holds it.
 
-    Derivatives are exact (casadi's).
+    Derivatives are exact (casadi's). States of motors count from what they are there.
     """
-    import casadi
     import numpy as np
 
     links = independent(found.tree, found.followers)
-    width, system = sum(link.velocities for link in links), found.system
-    step, v, u = casadi.SX.sym("d", width), casadi.SX.sym("v", width), casadi.SX.sym("u", len(system.inputs))
-    z = moved(links, point.positions, [step[k] for k in range(width)])
-    accelerations = found.graph(casadi.vertcat(*z, v), u)[-width:]
-    slopes = casadi.Function("f", [step, v, u], [casadi.jacobian(accelerations, part) for part in (step, v, u)] + [accelerations])
-    by_step, by_v, by_u, rest = (np.array(block, dtype=float) for block in slopes(np.zeros(width), np.zeros(width), np.array(point.inputs)))
+    by_step, by_v, by_a, by_u, rest = _slopes(found, links, point)
+    width, lagging = by_v.shape[1], len(point.activations)
     kept, basis = reduction(found, point.positions)
-    count = len(kept)
-    a = np.block([[np.zeros((count, count)), np.eye(count)], [by_step[kept] @ basis, by_v[kept] @ basis]])
-    b = np.vstack([np.zeros((count, len(point.inputs))), by_u.reshape(width, len(point.inputs))[kept]])
+    count, rows = len(kept), [*kept, *range(width, width + lagging)]
+    a = np.block(
+        [[np.zeros((count, count)), np.eye(count), np.zeros((count, lagging))], [(by_step @ basis)[rows], (by_v @ basis)[rows], by_a[rows]]]
+    )
+    b = np.vstack([np.zeros((count, len(point.inputs))), by_u[rows]])
     positions = displacements(links)
     outputs = [number for number, variable in enumerate(positions) if variable.name.endswith(".position")]
-    c = np.hstack([basis[outputs], np.zeros((len(outputs), count))])
+    c = np.hstack([basis[outputs], np.zeros((len(outputs), count + lagging))])
     rest[np.abs(rest) <= _HELD] = 0.0
-    offset = np.concatenate([np.zeros(count), rest.reshape(-1)[kept]])
+    offset = np.concatenate([np.zeros(count), rest[rows]])
     states = tuple(positions[k] for k in kept)
     velocities = tuple(Variable(_rate_name(v.name), f"{v.unit}/s", rf"\dot {v.symbol}") for v in states)
     matrices = map(sympy_matrix, (a, b, c, np.zeros((len(outputs), b.shape[1])), offset[:, None]))
-    return StateSpace((*states, *velocities), system.inputs, tuple(positions[k] for k in outputs), *matrices)
+    whole = (*states, *velocities, *map(activation, remembering(found.motors)))
+    return StateSpace(whole, found.system.inputs, tuple(positions[k] for k in outputs), *matrices)
+
+
+def _slopes(found: Trees, links: Sequence[Link], point: OperatingPoint) -> list[Floats]:
+    """Accelerations and the rates of motors' states: derivatives by displacements, velocities, these states and inputs; and values."""
+    import casadi
+    import numpy as np
+
+    sizes = sum(link.velocities for link in links), len(point.activations), len(point.inputs)
+    step, v, a, u = (casadi.SX.sym(name, size) for name, size in zip("dvau", (sizes[0], *sizes), strict=True))
+    z = moved(links, point.positions, [step[k] for k in range(sizes[0])])
+    rates = found.graph(casadi.vertcat(*z, v, a), u)[len(z) :]
+    slopes = casadi.Function("f", [step, v, a, u], [casadi.jacobian(rates, part) for part in (step, v, a, u)] + [rates])
+    values = slopes(np.zeros(sizes[0]), np.zeros(sizes[0]), np.array(point.activations), np.array(point.inputs))
+    return [*(np.array(block, dtype=float).reshape(sum(sizes[:2]), -1) for block in values[:-1]), np.array(values[-1], dtype=float)[:, 0]]
 
 
 def _rate_name(name: str) -> str:

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.couplings import Expanded, Follower, expanded, independent
-from hymeko_x.dynamics.drives import Cable, Motor, drive, pull_cables
+from hymeko_x.dynamics.drives import Cable, Motor, drive, pull_cables, remembering, signals_of, state_rates
 from hymeko_x.dynamics.loops import STABILISATION, Closing, Closure, closed_acceleration, closing
 from hymeko_x.dynamics.numbers import add, dot, factorize, floats, graphs, solve, symbols, times
 from hymeko_x.dynamics.positions import nearest
@@ -104,17 +104,21 @@ class Trees(Struct, frozen=True, dict=True):
 
     def passive(self, q: Floats, v: Floats) -> Floats:
         """The forces of damping and springs, at joints and of tendons."""
-        return _array(passive_forces(self.tree, self.cables, _columns(q), _columns(v), floats()), q)
+        return _array(passive_forces(self._constants, self.cables, _columns(q), _columns(v)), q)
 
     @cached_property
     def system(self) -> System:
-        """x = (q, v) of the independent links, u = controls of motors or a force for each dof of one coordinate, y = their positions."""
+        """x = (q, v, a) of the independent links and the motors that have a state, u = controls or a force for each dof of one coordinate.
+
+        y is the positions of these dofs.
+        """
         links = independent(self.tree, self.followers)
         states = [_variable(link, k, "position") for link in links for k in range(link.coordinates)]
         if self.closures:
             closed = nearest(links, self.closed_at, [variable.value for variable in states])
             states = [replace(variable, value=value) for variable, value in zip(states, closed, strict=True)]
         states += [_variable(link, k, "velocity") for link in links for k in range(link.velocities)]
+        states += map(activation, remembering(self.motors))
         scalar = [link for link in links if link.velocities == 1]
         inputs = tuple(_variable(link, 0, "effort") for link in scalar) if self.motors is None else tuple(map(_control, self.motors))
         outputs = tuple(_variable(link, 0, "position") for link in scalar)
@@ -223,8 +227,16 @@ def _control(motor: Motor) -> Variable:
     return Variable(f"{motor.id.name}.control", motor.unit, rf"u_{{\mathrm{{{plain}}}}}", 0.0, str(motor.id))
 
 
-def passive_forces(tree: Tree, cables: Sequence[Cable], q: Sequence[Number], v: Sequence[Number], numbers: Numbers) -> list[Number]:
+def activation(motor: Motor) -> Variable:
+    """The state of a motor; that of an integrator of velocities is a position."""
+    plain = motor.id.name.replace("_", r"\_")
+    unit = motor.unit.removesuffix("/s") if not motor.law.lag else motor.unit
+    return Variable(f"{motor.id.name}.activation", unit, rf"a_{{\mathrm{{{plain}}}}}", 0.0, str(motor.id))
+
+
+def passive_forces(constants: Constants, cables: Sequence[Cable], q: Sequence[Number], v: Sequence[Number]) -> list[Number]:
     """The forces of dampers and springs at the dofs and of tendons. A spring of a ball is left out: no format agrees on its rest."""
+    tree, numbers = constants.tree, constants.numbers
     forces: list[Number] = [0] * tree.nv
     for link in tree.links:
         for k in range(link.v, link.v + link.velocities):
@@ -233,7 +245,7 @@ def passive_forces(tree: Tree, cables: Sequence[Cable], q: Sequence[Number], v: 
         if link.dof.stiffness and link.coordinates == 1:
             stretch = add(q[link.q], numbers.exact(-link.dof.spring_ref))
             forces[link.v] = add(forces[link.v], minus(times(numbers.exact(link.dof.stiffness), stretch)))
-    pull_cables(forces, cables, tree, q, v, numbers)
+    pull_cables(forces, cables, constants, q, v)
     return forces
 
 
@@ -241,21 +253,23 @@ def _rates(found: Trees) -> Callable[[Sequence[Number], Sequence[Number], Sequen
     tree, followers = found.tree, found.followers
     links = independent(tree, followers)
     nz = sum(link.coordinates for link in links)
+    end = nz + sum(link.velocities for link in links)
 
     def rates(x: Sequence[Number], u: Sequence[Number], p: Sequence[Number], numbers: Numbers) -> list[Number]:
         constants = Constants(tree, numbers, found.gravity)
-        whole = expanded(tree, followers, x[:nz], x[nz:], numbers)
-        tau = passive_forces(tree, found.cables, whole.q, whole.v, numbers)
+        whole = expanded(tree, followers, x[:nz], x[nz:end], numbers)
+        tau = passive_forces(constants, found.cables, whole.q, whole.v)
         if found.motors is not None:
-            drive(tau, found.motors, u, tree, whole.q, whole.v, numbers)
+            drive(tau, found.motors, signals_of(found.motors, x[end:], u), constants, whole.q, whole.v)
         else:
             for link, value in zip([link for link in links if link.velocities == 1], u, strict=True):
                 tau[link.v] = add(tau[link.v], value)
         if not followers and not found.closures:
             moved = forward_dynamics(constants, whole.q, whole.v, tau)
         else:
-            moved = reduced_acceleration(constants, whole, tau, found.closures, x[nz:])
-        return [*position_rates(links, x[:nz], x[nz:]), *moved]
+            moved = reduced_acceleration(constants, whole, tau, found.closures, x[nz:end])
+        follow = [] if found.motors is None else state_rates(found.motors, x[end:], u, numbers)
+        return [*position_rates(links, x[:nz], x[nz:end]), *moved, *follow]
 
     return rates
 

@@ -81,7 +81,7 @@ def test_accelerations_are_those_of_pinocchios_constrained_dynamics(found: Multi
     theirs_q = q.copy()
     tau = found.passive(q, v)
     for motor, control in zip(found.motors or (), u, strict=True):
-        ((place, gear),) = motor.terms
+        ((place, gear),) = motor.line.terms
         tau[found.tree.links[place].v] += gear * control
     for link in found.tree.links:
         if link.dof.kind is DofKind.FREE:

@@ -88,7 +88,7 @@ def test_actuators_that_are_not_in_the_equations_are_named() -> None:
     found = hx.dynamics(hx.loads(text, "mjcf").mechanism, inputs="actuators", report=report)
     assert [variable.name for variable in found.system.inputs][-1] == "push.control"
     assert [str(d).split(": ", 2)[-1] for d in report if d.code.id == "HX408"] == [
-        "actuator 'pull' has a law or an end, which is not in the equations"
+        "actuator 'pull' is of the kind 'muscle', which is not in the equations"
     ]
     none = MODEL[: MODEL.index("<actuator>")] + "</mujoco>"
     with pytest.raises(Refusal, match=r"HX408\]: .*no actuator of it drives a joint"):
