@@ -72,6 +72,11 @@ class Submesh(Struct, frozen=True, eq=False):
     normals: NDArray[np.float64] | None = None
     normal_corners: NDArray[np.signedinteger[Any]] | None = None
 
+    @property
+    def has_points_alone(self) -> bool:
+        """Whether its corners have neither texture coordinates nor normals."""
+        return self.uv is None and self.normals is None
+
 
 class ColouredMesh(NamedTuple):
     """All triangles of a mesh file, and for each appearance the rows of its triangles in ``mesh.faces``; the others have none."""

@@ -140,9 +140,7 @@ def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> 
         if reason is not None:
             _report_converted(run, key, reason)
             _write_mesh(run, key, mesh.without_points(), part, key.name, solid=solid)
-        elif stays_inline(part) or (
-            run.shelf.mode == "reference" and part.uv is None and part.normals is None
-        ):  # then the main file stands alone
+        elif stays_inline(part) or (run.shelf.mode == "reference" and part.has_points_alone):  # then the main file stands alone
             _add_mesh(run, key, mesh, part)
         else:
             suffix, data = mesh_file(part)

@@ -29,14 +29,14 @@ _MOST_POINTS = 200
 
 def stays_inline(part: Submesh) -> bool:
     """Whether a mesh is small enough for the text of a model, which has no texture coordinates from the lower left, and no normals."""
-    return part.uv is None and part.normals is None and len(part.points) <= _MOST_POINTS
+    return part.has_points_alone and len(part.points) <= _MOST_POINTS
 
 
 def mesh_file(part: Submesh) -> tuple[str, bytes]:
     """The suffix and the content of the file: STL where its points come in the order of the triangles, MSH without triangles, else OBJ."""
     if not len(part.faces):
         return ".msh", msh_bytes(part)
-    if part.uv is None and part.normals is None and len(part.faces) <= MOST_STL_FACES and _is_in_order_of_stl(part):
+    if part.has_points_alone and len(part.faces) <= MOST_STL_FACES and _is_in_order_of_stl(part):
         return ".stl", stl_bytes(part)
     return ".obj", obj_bytes(part)
 

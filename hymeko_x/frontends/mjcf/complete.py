@@ -19,10 +19,10 @@ from hymeko_x.formats.mjcf.places import PLACE, Place
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.formats.mjcf.words import NAME, compiler_has, compilers, joined, mentions, settings_of
 from hymeko_x.frontends.mjcf.colours import with_mean_colours
+from hymeko_x.frontends.mjcf.points import is_made, with_points
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism, shape_edge
 from hymeko_x.ir.parts import Body, Box, Camera, Capsule, Cylinder, DofKind, Ellipsoid, Inertial, Joint, Mesh, NoShape, Sphere
 from hymeko_x.ir.values import pose, rotate_tensor, unit_quat
-from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -56,7 +56,7 @@ def complete(mechanism: Mechanism, printed: Printed, files: Files, report: Repor
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
     scaled = compiler_has(mechanism, _SCALES)
     sprung = mentions(mechanism, "springdamper")
-    meshes = [key for key, mesh in mechanism.vertices(Mesh) if _is_made(mechanism, key, mesh)]
+    meshes = [key for key, mesh in mechanism.vertices(Mesh) if is_made(mechanism, key, mesh)]
     fitted = [view for view in mechanism.every_shape() if _is_fitted(mechanism, view)]
     if not (wanted or scaled or sprung or meshes or fitted):
         return mechanism
@@ -83,7 +83,7 @@ def complete(mechanism: Mechanism, printed: Printed, files: Files, report: Repor
     bodies = _with_inertials(mechanism, model, {key: order[key] for key in chosen if key in order})
     edges = _with_springs(mechanism, model, order) if sprung and b"springdamper=" in text else {}
     edges |= _fitted(mechanism, mujoco, model, fitted, order)
-    points = {key: _with_points(mechanism, mujoco, model, key) for key in meshes}
+    points = {key: with_points(mechanism, mujoco, model, key, assets) for key in meshes}
     return mechanism.replace(vertices={**bodies, **points}, edges=edges)
 
 
@@ -277,39 +277,7 @@ def _geom(mujoco: Any, view: ShapeView, settings: Settings) -> dict[str, Any]:
     return found
 
 
-# ---- meshes and fitted primitives ----------------------------------------------------------------------------------------------
-
-_MADE = ("@builtin", "@refpos", "@refquat")
-
-
-def _is_made(mechanism: Mechanism, key: Id, mesh: Mesh) -> bool:
-    """Whether only MuJoCo has the points of a mesh: of its own file type, of a formula, moved, or the hull of points."""
-    if any(extra.format == NAME and extra.path in _MADE for extra in mechanism.extras.get(key, ())):
-        return True
-    return mesh.uri.lower().endswith(".msh") if mesh.uri is not None else bool(mesh.vertices and not mesh.faces)
-
-
-def _with_points(mechanism: Mechanism, mujoco: Any, model: Any, key: Id) -> Mesh:
-    """A mesh with its points and triangles where MuJoCo has them, in the frame that poses of shapes mean."""
-    mesh = mechanism.vertex(key, Mesh)
-    names = [mesh.name, key.name, file_stem(mesh.uri or "")]
-    found = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_MESH, name) for name in names if name)
-    number = next((number for number in found if number >= 0), -1)
-    if number < 0:
-        return mesh
-    points, faces = int(model.mesh_vertadr[number]), int(model.mesh_faceadr[number])
-    centred = model.mesh_vert[points : points + int(model.mesh_vertnum[number])].astype(float)
-    vertices = centred @ _rotation(mujoco, model.mesh_quat[number]).T + model.mesh_pos[number]
-    corners = model.mesh_face[faces : faces + int(model.mesh_facenum[number])]
-    return replace(mesh, uri=None, scale=(1.0, 1.0, 1.0), vertices=tuple(vertices.ravel().tolist()), faces=tuple(corners.ravel().tolist()))
-
-
-def _rotation(mujoco: Any, quat: Any) -> Any:
-    import numpy as np
-
-    matrix = np.zeros(9)
-    mujoco.mju_quat2Mat(matrix, quat)
-    return matrix.reshape(3, 3)
+# ---- fitted primitives -------------------------------------------------------------------------------------------------------
 
 
 def _is_fitted(mechanism: Mechanism, view: ShapeView) -> bool:
