@@ -135,7 +135,8 @@ def _round(original: Source, format: Format, conversion: Conversion, edited: Sou
     every = diff(before, after, TOLERANCE)
     gone = _dropped(every, after, original, format)
     after = _without_inertials(before, after, {element for element, field in gone if field.partition(".")[0] == "inertial"})
-    dropped = [edit for edit in every if (str(edit.element), edit.field) in gone and not _is_inherited(edit) and not _is_weight(edit)]
+    derived = (_is_inherited, _is_weight, _is_given_again)
+    dropped = [edit for edit in every if (str(edit.element), edit.field) in gone and not any(test(edit) for test in derived)]
     texts = text_with_edits(original, format, before, after, report) if len(dropped) < len(every) else Texts({}, {})
     return _Round(before, texts, beside, tuple(dropped), conversion.left())
 
@@ -219,6 +220,11 @@ def _without_unused(before: Mechanism, after: Mechanism) -> Mechanism:
 def _is_weight(edit: Difference) -> bool:
     """Whether an edit is of the mass of a shape, which is part of its body's inertial."""
     return edit.element.kind == "shape" and edit.field in ("mass", "density")
+
+
+def _is_given_again(edit: Difference) -> bool:
+    """Whether an edit gives a shape a name that it had not, as where one shape of that name has become several."""
+    return edit.element.kind == "shape" and edit.field == "name" and edit.before in (None, "none")
 
 
 def _is_inherited(edit: Difference) -> bool:

@@ -9,7 +9,7 @@ from hymeko_x.ir.parts import Body, Material
 from hymeko_x.residue import Landmark
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Set
 
     from hymeko_x.ir.mechanism import Id, Mechanism
 
@@ -68,8 +68,11 @@ class _Look:
 # ---- renames since ---------------------------------------------------------------------------------------------------------
 
 
-def renamed_since(image: Mechanism, landmarks: Iterable[Landmark]) -> dict[Id, Id]:
-    """The old ids of renamed elements by their new ones; those for which more than one element may be meant are left out. Linear."""
+def renamed_since(image: Mechanism, landmarks: Iterable[Landmark], others: Set[Id]) -> dict[Id, Id]:
+    """The old ids of renamed elements by their new ones; those for which more than one element may be meant are left out. Linear.
+
+    ``others`` are elements without a landmark that were in the image under these ids already.
+    """
     known = {landmark.element: landmark for landmark in landmarks}
     missing = [landmark for key, landmark in known.items() if key not in image.graph]
     if not missing:
@@ -77,7 +80,7 @@ def renamed_since(image: Mechanism, landmarks: Iterable[Landmark]) -> dict[Id, I
     look = _Look(image)
     unknown: dict[Mark, list[Id]] = defaultdict(list)
     for key in (*image.graph.vertices, *image.graph.edges):
-        if key.kind in NAMED and key not in known:
+        if key.kind in NAMED and key not in known and key not in others:
             unknown[_mark(look.at(key), {})].append(key)
     on_joint = {landmark.beside[0]: key for key, landmark in known.items() if key.kind == "joint" and landmark.beside}
     alone = Counter(_mark(landmark, {}) for landmark in missing)

@@ -51,7 +51,7 @@ class Restored(NamedTuple):
 
 def restore(image: Mechanism, residue: Residue, report: Report) -> Restored:
     """The source, with what was done to its image since. What no longer applies is reported."""
-    names = renamed_since(image, residue.landmarks)
+    names = renamed_since(image, residue.landmarks, {key for key, _ in residue.removals})
     for new, old in names.items():
         report.note(codes.RESIDUE_FOLLOWED, f"{old} is called '{new.name}' now", element=str(new))
     aligned = realign(with_old_names(image, names), residue.alignment)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import Names
-from hymeko_x.ir.parts import Joint, Mesh, Role, Shape
+from hymeko_x.ir.parts import Joint, Mesh, Role, Shape, Texture
 from hymeko_x.ir.values import IDENTITY, Pose
 from hymeko_x.source import file_stem
 
@@ -32,8 +32,8 @@ def other_names(image: Mechanism, source: Mechanism) -> dict[Id, Id]:
     pairs = _Pairs(image.graph, source.graph)
     pairs.match_world()
     pairs.match_ends()  # bodies by the joints that both have, materials and meshes by the shapes
-    for _ in range(2):  # then edges by what they connect, and once more what only those lead to
-        pairs.match_edges()
+    for with_layers in (False, True):  # then edges by what they connect, and once more what only those lead to
+        pairs.match_edges(with_layers=with_layers)
         pairs.match_ends()
     return pairs.names | dict(pairs.ousted())
 
@@ -89,20 +89,20 @@ class _Pairs:
                 if target is not None:
                     self.pair(arc.target, target)
 
-    def match_edges(self) -> None:
-        """Edges of the same kind between the same elements."""
+    def match_edges(self, *, with_layers: bool) -> None:
+        """Edges of the same kind between the same elements; layers once their materials are known from the shapes that have them."""
         if not self.strange or not self.missing:
             return
         waiting: dict[object, list[Id]] = defaultdict(list)
         for key, edge in self.source.edges.items():
-            if key in self.missing:
-                waiting[self._ends(key, edge, {})].append(key)
+            if key in self.missing and (with_layers or key.kind != "layer"):
+                waiting[self._ends(self.source, key, edge, {})].append(key)
         if not waiting:
             return
         candidates: dict[object, list[Id]] = defaultdict(list)
         for key, edge in self.image.edges.items():
             if key in self.strange:
-                candidates[self._ends(key, edge, self.names)].append(key)
+                candidates[self._ends(self.image, key, edge, self.names)].append(key)
         for ends, keys in candidates.items():
             if ends in waiting:
                 self._match(keys, waiting[ends])
@@ -132,8 +132,15 @@ class _Pairs:
             if key in self.strange and (same := alike.get(ours(self.image.edges[key]))):
                 self.pair(key, same.pop())
 
-    def _ends(self, key: Id, edge: RobotEdge, names: dict[Id, Id]) -> object:
-        """What an edge is and what it is on; assets do not count, which are renamed most often, nor what is called as the edge is."""
+    def _ends(self, graph: RobotGraph, key: Id, edge: RobotEdge, names: dict[Id, Id]) -> object:
+        """What an edge is and what it is on; assets do not count, which are renamed most often, nor what is called as the edge is.
+
+        A layer is on its material, or on the file of its texture where it is not known which material that is.
+        """
+        if key.kind == "layer":
+            ends = [names.get(arc.target, arc.target) for arc in edge.arcs]
+            known = [end for end in ends if end.kind == "material" and end in self.source.vertices and end not in self.missing]
+            return key.kind, edge.data, tuple(known or [_file_of(graph, arc.target) for arc in edge.arcs])
         targets = [names.get(arc.target, arc.target) for arc in edge.arcs if arc.target.kind not in ("mesh", "material", "texture")]
         return key.kind, tuple([target.kind if target.kind in _PLACED and target.name == key.name else target for target in targets])
 
@@ -206,8 +213,13 @@ def _essence(graph: RobotGraph, edge: RobotEdge, own: Callable[[Id, Id], Id] = l
 
 def _asset(graph: RobotGraph, key: Id, own: Callable[[Id, Id], Id]) -> object:
     """A mesh is the one of its file, whatever its id."""
+    return (_file_of(graph, key) if key.kind == "mesh" else None) or own(key, key)
+
+
+def _file_of(graph: RobotGraph, key: Id) -> str | None:
+    """The stem of the file of a mesh or a texture, if it has one."""
     part = graph.vertices.get(key)
-    return file_stem(part.uri) if isinstance(part, Mesh) and part.uri else own(key, key)
+    return file_stem(part.uri) if isinstance(part, Mesh | Texture) and part.uri else None
 
 
 def _rounded(value: object) -> object:

@@ -84,15 +84,19 @@ def test_a_visual_that_is_added_to_mjcf_touches_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.unread("HX101")
-def test_masses_have_no_place_where_the_engine_counts_shapes(tmp_path: Path) -> None:
-    (tmp_path / "r.xml").write_text(LEG.replace("<worldbody>", '<compiler inertiafromgeom="true"/><worldbody>'))
+def test_a_mass_counts_where_the_engine_passed_over_inertials(tmp_path: Path) -> None:
+    passed_over = '<compiler inertiafromgeom="true"/><worldbody>'
+    geom = '<inertial pos="0 0 0" mass="9" diaginertia="1 1 1"/>\n      <geom name="shin"'
+    (tmp_path / "r.xml").write_text(LEG.replace("<worldbody>", passed_over).replace('<geom name="shin"', geom))
+    before = mujoco.MjModel.from_xml_path(str(tmp_path / "r.xml"))
     hx.convert(tmp_path / "r.xml", tmp_path / "r.urdf")
     (tmp_path / "r.urdf").write_text((tmp_path / "r.urdf").read_text().replace("</robot>", TOOL))
-    for _ in range(2):
-        found = hx.update(tmp_path / "r.xml", tmp_path / "r.urdf")
-        assert [row.code.id for row in found.report] == ["HX118"]
-        assert "body 'tool' inertial: none -> inertial(mass 1.5" in found.report.diagnostics[0].message
-    assert "<inertial" not in (tmp_path / "r.xml").read_text()
+    notes = [row.message for row in hx.update(tmp_path / "r.xml", tmp_path / "r.urdf").report]
+    assert notes == ['inertiafromgeom becomes "auto": bodies that have an inertial keep it, all others get theirs from geoms as before']
+    assert list(hx.update(tmp_path / "r.xml", tmp_path / "r.urdf").report) == []
+    after = mujoco.MjModel.from_xml_path(str(tmp_path / "r.xml"))
+    assert list(after.body_mass) == [*before.body_mass, 1.5]
+    assert (tmp_path / "r.xml").read_text().count("<inertial") == 1  # of the tool: MuJoCo passed over the other one
 
 
 @pytest.mark.unread("HX101")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import mujoco
 import pytest
+from PIL import Image
 
 import hymeko_x as hx
 
@@ -144,3 +146,47 @@ def test_a_link_that_is_moved_in_its_joint_is_no_edit_that_is_left_where_it_beco
     assert hx.update(tmp_path / "r.urdf", tmp_path / "r.sdf").changed
     again = hx.update(tmp_path / "r.urdf", tmp_path / "r.sdf")
     assert (again.edits, [str(row) for row in again.report if row.code.id == "HX118"]) == ((), [])
+
+
+WALLS = """<mujoco model="r">
+  <asset>
+    <texture name="t_floor" type="2d" file="floor.png"/>
+    <texture name="t_wood" type="2d" file="wood.png"/>
+    <texture name="t_wall" type="2d" file="wall.png"/>
+    <material name="floor" texture="t_floor" specular="0.1"/>
+    <material name="wood" texture="t_wood" specular="0.3"/>
+    <material name="wall" texture="t_wall" specular="0.7"/>
+  </asset>
+  <worldbody>
+    <geom type="plane" size="2 2 1" material="floor"/>
+    <body name="table">
+      <geom name="top" type="box" size="1 1 0.1" material="wood"/>
+      <geom name="leg" type="box" size="0.1 0.1 1" material="wood"/>
+    </body>
+    <body name="wall">
+      <geom type="box" size="1 0.1 1" material="wall"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101", "HX023")
+def test_what_is_left_keeps_its_materials_when_a_body_is_removed_from_a_format_where_materials_have_no_names(tmp_path: Path) -> None:
+    for name in ("floor", "wood", "wall"):
+        Image.new("RGB", (2, 2)).save(tmp_path / f"{name}.png")
+    (tmp_path / "r.xml").write_text(WALLS)
+    hx.convert(tmp_path / "r.xml", tmp_path / "r.sdf")
+    text = (tmp_path / "r.sdf").read_text()
+    for element in ('<joint name="wall_joint".*?</joint>', '<link name="wall">.*?</link>'):
+        text = re.sub(element, "", text, flags=re.DOTALL)
+    (tmp_path / "r.sdf").write_text(text)
+    hx.update(tmp_path / "r.xml", tmp_path / "r.sdf")
+    after = (tmp_path / "r.xml").read_text().splitlines()
+    gone = [line.strip() for line in WALLS.splitlines() if line not in after]
+    assert [line.partition(" ")[2] for line in gone] == [
+        'name="t_wall" type="2d" file="wall.png"/>',
+        'name="wall" texture="t_wall" specular="0.7"/>',
+        'name="wall">',
+        'type="box" size="1 0.1 1" material="wall"/>',
+    ]

@@ -16,7 +16,7 @@ from hymeko_x.formats.mjcf.keyframes import is_keyframes, with_poses
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.words import NAME, compiler_has
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Actuator, DofKind
+from hymeko_x.ir.parts import Actuator, Body, DofKind
 from hymeko_x.rewrite.actuators import drop_foreign_actuators, drop_idle_actuators
 from hymeko_x.rewrite.couplings import drop_odd_tendons, make_couplings_scalar, make_tendons_sound, name_wrapped_shapes
 from hymeko_x.rewrite.differentials import drive_by_differentials
@@ -108,6 +108,34 @@ def _drop_empty_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
     return drop_empty_shapes(mechanism, context, has_own_geometry)
 
 
+_FROM_GEOMS = 'inertiafromgeom="true"'
+
+
+def _let_inertials_count(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Where <compiler> makes MuJoCo pass over inertials and a body has one, only bodies without one get theirs from geoms."""
+    own = mechanism.extras.get(ROOT, ())
+    compilers = [extra for extra in own if extra.format == NAME and extra.text.startswith("<compiler") and _FROM_GEOMS in extra.text]
+    if not compilers or all(body.inertial is None for _, body in mechanism.vertices(Body)):
+        return mechanism
+    message = 'inertiafromgeom becomes "auto": bodies that have an inertial keep it, all others get theirs from geoms as before'
+    context.report.note(codes.REWRITTEN, message, mechanism.origin(ROOT))
+    extras = {
+        key: tuple([extra for extra in found if not (key.kind == "body" and _is_inertial(extra))])
+        for key, found in mechanism.extras.items()
+    }
+    extras[ROOT] = tuple([_counting(extra) if extra in compilers else extra for extra in own])
+    return replace(mechanism, extras=extras)
+
+
+def _counting(compiler: Extra) -> Extra:
+    return replace(compiler, text=compiler.text.replace(_FROM_GEOMS, 'inertiafromgeom="auto"'))
+
+
+def _is_inertial(extra: Extra) -> bool:
+    """Whether an extra is an <inertial> that MuJoCo passed over."""
+    return extra.format == NAME and not extra.path and extra.text.startswith("<inertial")
+
+
 _COORDINATES: Mapping[DofKind, tuple[int, int]] = MappingProxyType({DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)})
 """How many coordinates and velocities a dof has; one of each for all others."""
 _KEY = re.compile(r"<key\b[^>]*?/>|<key\b.*?</key>", re.DOTALL)
@@ -171,6 +199,7 @@ _REPLACED: Mapping[Rule, Rule | None] = MappingProxyType(
 NATIVE: tuple[Rule, ...] = (
     *(rule for common in RULES if (rule := _REPLACED.get(common, common)) is not None),
     name_dofs_once,
+    _let_inertials_count,
     _drop_stale_keyframes,
 )
 """The rules for what came from MJCF: none changes what MuJoCo reads, all hold for what was edited in another format since."""
