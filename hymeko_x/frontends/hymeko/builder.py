@@ -188,8 +188,11 @@ class HymekoBuilder(Builder):
 
     def arc(self, kind: str, item: ArcItem, scope: Scope, kinds: tuple[str, ...] | None = None) -> RobotArc:
         """An arc of an edge of this kind, with its weight. ``kinds``: what it may lead to, the likeliest first."""
-        target = self.target(item.ref, scope, TARGETS[kind] if kinds is None else kinds, item)
-        return Arc(target, sign_of(item), self._weight(kind, item), str(item.role))
+        sign = sign_of(item)
+        expected = TARGETS[kind] if kinds is None else kinds
+        if kind == "drive" and sign < 0:
+            expected = tuple(other for other in expected if other != "actuator")
+        return Arc(self.target(item.ref, scope, expected, item), sign, self._weight(kind, item), str(item.role))
 
     def _weight(self, kind: str, item: ArcItem) -> Weight | None:
         """An arc's weight: a pose for the edges that join bodies, numbers for the others."""
