@@ -16,12 +16,12 @@ from hymeko_x.ir.parts import Body, Light, Loop, Role
 from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.printing import Tag, markup, put_back, ready
 from hymeko_x.xml.text import escaped
+from hymeko_x.xml.tree import Node
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from hymeko_x.ir.mechanism import Id, Mechanism
-    from hymeko_x.xml.tree import Node
 
 _SCRIPT = re.compile(r"<script>.*?<name>\s*([^<]*?)\s*</name>.*?</script>", re.DOTALL)
 _MODEL_PATHS = ("model", "world/model")
@@ -55,7 +55,7 @@ def _of_link(body: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
     frictions = {view.shape.friction[:1] for view in shapes if view.shape.role is Role.COLLISION}
     if len(frictions) == 1 and (friction := next(iter(frictions))):
         yield _leaf("mu1", NUMBER.write(friction[0]))
-    for word, (path, name) in words.OF_COLLISION.items():
+    for word, (path, name) in words.OF_COLLISION.items() if all(node.children for node in collisions) else ():
         yield from _shared(word, f"{path}/{name}".lstrip("/"), collisions)
     scripts = {_script(view.id, sheet) for view in shapes if view.shape.role is Role.VISUAL}
     if len(scripts) == 1 and (script := next(iter(scripts))):
@@ -74,8 +74,11 @@ def _shared(word: str, path: str, elements: Sequence[Node]) -> Iterator[Tag]:
 
 def _whole(key: Id, sheet: SdfSheet) -> Node:
     """What SDF alone represents of an element of the mechanism."""
+    own = sheet.extras(key)
+    if not own:
+        return Node("x", {})
     whole = Tag("x", {})
-    put_back(whole, sheet.extras(key), {})
+    put_back(whole, own, {})
     return parse_text(ready(whole, 0))
 
 
@@ -97,7 +100,7 @@ def _script(key: Id, sheet: SdfSheet) -> str | None:
 
 def _of_joint(joint: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
     whole = _whole(joint, sheet)
-    for word, (path, name) in words.OF_JOINT.items():
+    for word, (path, name) in words.OF_JOINT.items() if whole.children else ():
         yield from _shared(word, f"{path}/{name}", [whole])
     if not sheet.mechanism.joints[joint].joint.dofs:
         yield _leaf(words.OBEYED[0], "true")

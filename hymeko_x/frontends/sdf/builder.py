@@ -117,7 +117,7 @@ class SdfBuilder(Builder):
                 return field.default
             path.append(found)
             node = found
-        if not node.has(last):  # an empty element stays as it is
+        if path and not node.has(last):  # an empty element stays as it is
             return field.default
         for found in path:
             found.taken = True
