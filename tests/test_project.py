@@ -10,6 +10,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+import yaml
 
 import hymeko_x
 
@@ -63,3 +64,23 @@ def test_the_wheel_carries_data_files_and_nothing_that_does_not_belong_there(tmp
     ours = {"hymeko_x/py.typed", "hymeko_x/corpus/catalog.toml", "hymeko_x/language/hymeko.lark", "hymeko_x/cli/convert.py"}
     assert ours - set(names) == set()
     assert [name for name in names if not name.startswith(("hymeko_x/", "hymeko_x-"))] == []
+
+
+def test_the_hooks_and_the_action_install_what_their_files_need() -> None:
+    """Each in an environment of its own, from this folder: the core and the extras that they name."""
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
+    hooks = {hook["id"]: hook for hook in yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text("utf-8"))}
+    extras = {
+        name: [word for text in hook.get("additional_dependencies", []) for word in text[2:-1].split(",")] for name, hook in hooks.items()
+    }
+    assert extras == {
+        "hymeko-x-check": ["xacro"],
+        "hymeko-x-agree": ["verify"],
+        "hymeko-x-agree-sdf": ["verify", "sdf"],
+        "hymeko-x-fmt": [],
+    }
+    assert {extra for words in extras.values() for extra in words} <= declared.keys()
+    assert re.search(hooks["hymeko-x-check"]["files"], "arm.urdf.xacro")
+    action = yaml.safe_load((ROOT / "action.yml").read_text("utf-8"))
+    assert action["inputs"]["extras"]["default"] == "verify"
+    assert re.search(r"hymeko-x\[.*\bxacro\b.*\]", declared["verify"][0])
