@@ -46,6 +46,11 @@ class Block(Struct, eq=False):
     children: list[Block] = field(default_factory=list)
     parent: Block | None = None
 
+    @property
+    def is_name_alone(self) -> bool:
+        """Whether the block is a name that stands for all of it."""
+        return self.inside == (self.end, self.end)
+
     def add(self, child: Block) -> None:
         """Put a block into this one."""
         child.parent = self

@@ -47,7 +47,7 @@ class _Merge:
         self.unit = unit_of(own.files[own.main].data, own.root.walk())
         self.since: Pairs = match(after.root, before.root)
         self.mine: Pairs = match(before.root, own.root)
-        self.replaced = {block for block in after.root.walk() if block.start in replaced}
+        self.replaced = {block for block in after.root.walk() if block.start in replaced or self._is_changed_name(block)}
         self.kept = {
             block: place for block in after.root.walk() if (place := self._place(block)) is not None and block not in self.replaced
         }
@@ -58,6 +58,13 @@ class _Merge:
         """The author's block for one of the later print."""
         earlier = self.since.get(block)
         return None if earlier is None else self.mine.get(earlier)
+
+    def _is_changed_name(self, block: Block) -> bool:
+        """Whether the author has a name alone for a block, and it or a block beside it changed."""
+        place = self._place(block)
+        if place is None or not place.is_name_alone or block.parent is None:
+            return False
+        return any(not are_same(other, self.since[other]) for other in block.parent.children if other in self.since)
 
     def _is_moved(self, block: Block) -> bool:
         """Whether a block stands in another one than before."""

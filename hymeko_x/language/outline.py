@@ -23,6 +23,9 @@ NAME = "name of the node"
 TYPES = "types of the node"
 """The name of the field that is everything behind its colon."""
 
+ALONE = "collision"
+"""The name that stands for a whole shape when it is alone: a block without content."""
+
 _SIGNED = ("signature", "stereotypes", "stereotype", "use", "parameters", "parameter", "arguments")
 _VALUES = ("vector", "ref", "path", "relation", "type", *_SIGNED)
 _FIELDS = ("bare", "field", "import_", "short_import", "using", "constant")
@@ -73,6 +76,9 @@ def block_of(text: str, file: str) -> Block:
                 inner, content = _node(item, text, file, byte)
                 block.add(inner)
                 stack.append((inner, content))
+            elif item.kind == "bare" and text[item.start : item.end] == ALONE:
+                start, end = byte(item.start), byte(item.end)
+                block.add(Block("", ALONE, file, start, end, end, end, (end, end), {NAME: Field(ALONE, start, end, start, end)}))
             elif item.kind in (*_FIELDS, *_ARCS):
                 name, value = _field(item, text)
                 counts[name] += 1

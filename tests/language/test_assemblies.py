@@ -53,8 +53,8 @@ def test_there_is_no_assembly_where_a_name_from_outside_would_mean_something_in_
 
 def test_a_name_of_another_kind_is_no_obstacle() -> None:
     """Inside of `left`, the mesh `shin` is not taken for the body."""
-    text = LEG.replace('collision "meshes/shin.stl"', 'visual "meshes/shin.stl" collision=shin') % ("foot", "foot")
-    assert 'shin { mass 1 visual "meshes/shin.stl" collision=shin }' in canonical(text)
+    text = LEG.replace('collision "meshes/shin.stl"', 'visual "meshes/shin.stl" collision { mesh=shin at [0 0 1] }') % ("foot", "foot")
+    assert 'shin { mass 1 visual "meshes/shin.stl" collision { mesh=shin at [0 0 1] } }' in canonical(text)
     assert "left : assembly" in canonical(text)
 
 

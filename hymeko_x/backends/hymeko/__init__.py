@@ -77,6 +77,7 @@ def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
         nesting=nesting_of(mechanism, name),
         around=around,
         shared={} if flat else shared_joints(mechanism, mimics),
+        is_flat=flat,
     )
     items = _settings(sheet, plain)
     items += [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})] if plain or flat else _grouped(sheet)

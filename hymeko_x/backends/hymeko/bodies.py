@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.hymeko.extras import with_extras
@@ -19,7 +20,7 @@ from hymeko_x.language.syntax import Field, Item, Node, Value
 from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from hymeko_x.backends.hymeko.sheet import HymekoSheet
     from hymeko_x.backends.hymeko.values import Angles
@@ -34,10 +35,42 @@ def body_items(sheet: HymekoSheet, key: Id, part: parts.Body | parts.World) -> l
     items: list[Item] = [sheet.arc("joint", arc) for arc in sheet.attached.get(key, ())]
     if isinstance(part, parts.Body) and part.inertial is not None:
         items.extend(_inertial_items(part.inertial, sheet.angles))
+    return items + _shape_items(sheet, sheet.mechanism.shapes.get(key, ()))
+
+
+def _shape_items(sheet: HymekoSheet, views: Sequence[ShapeView]) -> list[Item]:
+    """The shapes in order; ``collision`` alone where the body collides with what the visuals directly before show."""
+    items: list[Item] = []
     names = Names()
-    for view in sheet.mechanism.shapes.get(key, ()):
-        items.append(_shape(sheet, view, names))
+    named = [names.take("shape", f"{view.body.name}/{SHAPE_ROLES[view.shape.role]}") == view.id for view in views]
+    place = first = 0  # of this shape, and of the first in a run of visuals that ends before it
+    while place < len(views):
+        end = 2 * place - first
+        seen, twins = views[first:place], views[place:end]
+        if seen and len(twins) == len(seen) and all(named[place:end]) and all(map(partial(_is_twin, sheet), seen, twins)):
+            items.append(Field("collision"))
+            place = first = end
+            continue
+        items.append(_shape(sheet, views[place], is_named=not named[place]))
+        place += 1
+        first = first if views[place - 1].shape.role is parts.Role.VISUAL else place
     return items
+
+
+def _is_twin(sheet: HymekoSheet, visual: ShapeView, view: ShapeView) -> bool:
+    """Whether a shape is a collision shape with the geometry, the mesh, the pose and the notations of a visual, and nothing else."""
+    mechanism = sheet.mechanism
+    plain = parts.Shape(visual.shape.geometry, parts.Role.COLLISION)
+    if (
+        sheet.is_flat
+        or sheet.around is not None
+        or view.id in mechanism.extras
+        or view.id in mechanism.stereotypes
+        or view.material is not None
+    ):
+        return False
+    same = identical(plain, view.shape) and identical(visual.pose, view.pose) and visual.mesh == view.mesh
+    return same and mechanism.notations.get(visual.id) == mechanism.notations.get(view.id)
 
 
 def _inertial_items(inertial: parts.Inertial, angles: Angles) -> list[Item]:
@@ -65,12 +98,11 @@ def _axes(frame: Pose, angles: Angles) -> Value:
     return rotation[1:] if isinstance(rotation[1], str) else (0.0, 0.0, 0.0)
 
 
-def _shape(sheet: HymekoSheet, view: ShapeView, names: Names) -> Item:
-    """``visual { .. }``, or ``visual "file"`` and ``visual=mesh`` for a mesh alone."""
+def _shape(sheet: HymekoSheet, view: ShapeView, *, is_named: bool) -> Item:
+    """``visual { .. }``, or ``visual "file"`` and ``visual=mesh`` for a mesh alone; ``is_named`` with its id."""
     word = SHAPE_ROLES[view.shape.role]
-    items = _shape_items(sheet, view)
-    expected = names.take("shape", f"{view.body.name}/{word}")
-    if expected != view.id:
+    items = _described(sheet, view)
+    if is_named:
         items.append(Field("id", view.id.name))
     items.extend(sheet.class_items(view.id))
     notations = sheet.mechanism.notations.get(view.id)
@@ -82,7 +114,7 @@ def _shape(sheet: HymekoSheet, view: ShapeView, names: Names) -> Item:
     return Node(word, tuple(items))
 
 
-def _shape_items(sheet: HymekoSheet, view: ShapeView) -> list[Item]:
+def _described(sheet: HymekoSheet, view: ShapeView) -> list[Item]:
     items = _geometry(sheet, view)
     if not identical(view.pose, IDENTITY):
         items.append(_place(view.pose, sheet.angles))

@@ -39,6 +39,7 @@ class HymekoSheet(Struct, frozen=True):
     of plain angles; ``homes``: the assemblies of elements, by the elements' names, and ``inside``: the one that is being printed;
     ``nesting``: what stands in the blocks of data, and ``within``: the element whose block is being printed;
     ``around``: the class in force at joints, shapes and frames, where classes are stereotypes of this text;
+    ``is_flat``: every shape stands by itself;
     ``clashes`` collects the assemblies in which a reference would mean another element.
     """
 
@@ -55,6 +56,7 @@ class HymekoSheet(Struct, frozen=True):
     within: Id | None = None
     around: Mapping[Id, str] | None = None
     shared: Mapping[Id, tuple[Id, ...]] = field(default_factory=dict)
+    is_flat: bool = False
     clashes: set[str] = field(default_factory=set)
     names: dict[str, list[str]] = field(default_factory=dict)
 

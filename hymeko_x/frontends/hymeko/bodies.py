@@ -11,6 +11,7 @@ from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.builder import sign_of
 from hymeko_x.frontends.hymeko.values import describe
 from hymeko_x.ir import parts
+from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import Id, shape_edge
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Tensor, Vec3, rotate_tensor
 from hymeko_x.ir.written import length_of
@@ -18,6 +19,8 @@ from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_field, is_lis
 from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
     from hymeko_x.frontends.hymeko.values import ValueReader
     from hymeko_x.language.expansion import Element, Scope
@@ -36,9 +39,8 @@ def read_body(builder: HymekoBuilder, key: Id, element: Element) -> None:
     color = block.take("color") if any(map(_is_seen, items)) else None
     if key.kind == "body":
         builder.vertices[key] = parts.Body(inertial)
-    for item in items:
-        if _is_shape(item):
-            _read_shape(builder, key, _with_color(_with_geometry(item, block), color), place, element.scope)
+    shapes = [_with_color(_with_geometry(item, block), color) for item in items if _is_shape(item)]
+    _read_shapes(builder, key, shapes, place, element.scope)
     block.nodes = [node for node in block.nodes if not _is_referenced(items, node)]
     block.rest(str(key))
     builder.keep(key, block)
@@ -63,8 +65,7 @@ def change_inertial(body: parts.Body, block: Block) -> parts.Body:
 def add_shapes(builder: HymekoBuilder, key: Id, block: Block, items: tuple[Item, ...], scope: Scope) -> None:
     """Give a body the shapes among the items, which are taken out of the block."""
     shapes = [item for item in items if _is_shape(item)]
-    for item in shapes:
-        _read_shape(builder, key, item, IDENTITY, scope)
+    _read_shapes(builder, key, shapes, IDENTITY, scope)
     block.nodes = [node for node in block.nodes if node not in shapes]
     block.arcs = [arc for arc in block.arcs if arc not in shapes]
     for item in shapes:
@@ -172,7 +173,32 @@ def _tensor(item: Field, reader: ValueReader) -> Tensor:
     return numbers
 
 
-def _read_shape(builder: HymekoBuilder, body: Id, item: Item, place: Pose, scope: Scope) -> None:
+def _read_shapes(builder: HymekoBuilder, body: Id, items: Sequence[Item], place: Pose, scope: Scope) -> None:
+    """The shapes of a body in order; ``collision`` alone is one like each of the visuals directly before it."""
+    seen: list[Id] = []
+    for item in items:
+        if is_field(item, ("collision",)) and item.value is None:
+            if not seen:
+                raise builder.reader.refuse(item, "'collision' alone means the visuals directly before it, and there is none")
+            for visual in seen:
+                _collide_as(builder, body, visual, item)
+            seen = []
+            continue
+        key = _read_shape(builder, body, item, place, scope)
+        seen = [*seen, key] if cast("parts.Shape", builder.edges[key].data).role is parts.Role.VISUAL else []
+
+
+def _collide_as(builder: HymekoBuilder, body: Id, visual: Id, item: Item) -> None:
+    """A collision shape with the geometry, the mesh, the pose and the notations of a visual."""
+    edge = builder.edges[visual]
+    key = builder.name_after_place("shape", f"{body.name}/{SHAPE_ROLES[parts.Role.COLLISION]}", item)
+    shape = parts.Shape(cast("parts.Shape", edge.data).geometry, parts.Role.COLLISION)
+    builder.edges[key] = Edge(shape, tuple(arc for arc in edge.arcs if arc.role != "material"))
+    if visual in builder.notations:
+        builder.notations[key] = builder.notations[visual]
+
+
+def _read_shape(builder: HymekoBuilder, body: Id, item: Item, place: Pose, scope: Scope) -> Id:
     """``visual { .. }``, ``visual "file"`` (a mesh's file), ``visual=mesh``, or ``visual -> mesh { .. }``."""
     match item:
         case Field(name=word):
@@ -198,6 +224,7 @@ def _read_shape(builder: HymekoBuilder, body: Id, item: Item, place: Pose, scope
     builder.edges[key] = shape_edge(shape, body, pose, mesh, material)
     block.rest(str(key))
     builder.keep(key, block)
+    return key
 
 
 def _named_after(key: Id, block: Block) -> dict[str, object]:
