@@ -26,6 +26,11 @@ class Pixels(NamedTuple):
         width = 4 * self.size[0]
         return [self.data[start : start + width] for start in range(0, len(self.data), width)]
 
+    def mean(self) -> tuple[float, float, float]:
+        """The mean of red, green and blue from 0 to 1, whatever the opacity."""
+        red, green, blue = (sum(self.data[channel::4]) / max(1, len(self.data) // 4) / 255.0 for channel in range(3))
+        return red, green, blue
+
 
 class UnreadableImage(Exception):
     """The bytes are no image; the text is the reason."""

@@ -107,23 +107,20 @@ def test_real_robots_have_their_pictures_in_every_format() -> None:
     assert any(one.changed for one in found)
 
 
+def through_urdf(body: str, folder: Path) -> float:
+    """The part of the pixels in which a robot of this body in MJCF differs from its conversion to URDF."""
+    (folder / "a.xml").write_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>")
+    robot = api.load(folder / "a.xml")
+    api.dump(robot, folder / "a.urdf", "urdf")
+    return pair(Subject(robot, str(folder / "a.xml")), Subject(api.load(folder / "a.urdf"), None), LOOK).changed
+
+
 def test_a_joint_with_a_reference_is_drawn_where_it_is_in_the_first_robot(tmp_path: Path) -> None:
-    (tmp_path / "a.xml").write_text(
-        '<mujoco><worldbody><body name="b" pos="0 0 0.5"><joint name="up" type="slide" axis="0 0 1" ref="0.5"/>'
-        '<geom type="box" size="0.1 0.2 0.1" mass="1" rgba="0.8 0.1 0.1 1"/></body></worldbody></mujoco>'
-    )
-    robot = api.load(tmp_path / "a.xml")
-    api.dump(robot, tmp_path / "a.urdf", "urdf")
-    other = api.load(tmp_path / "a.urdf")
-    assert pair(Subject(robot, str(tmp_path / "a.xml")), Subject(other, None), LOOK).changed < renders.CHANGED
+    joint = '<joint name="up" type="slide" axis="0 0 1" ref="0.5"/>'
+    body = f'<body name="b" pos="0 0 0.5">{joint}<geom type="box" size="0.1 0.2 0.1" mass="1" rgba="0.8 0.1 0.1 1"/></body>'
+    assert through_urdf(body, tmp_path) < renders.CHANGED
 
 
 def test_an_ellipsoid_looks_the_same_as_a_mesh_of_urdf(tmp_path: Path) -> None:
-    (tmp_path / "a.xml").write_text(
-        '<mujoco><worldbody><body name="egg"><geom type="ellipsoid" size="0.1 0.2 0.4" mass="1" rgba="0 0.5 0.5 1"/></body>'
-        "</worldbody></mujoco>"
-    )
-    robot = api.load(tmp_path / "a.xml")
-    api.dump(robot, tmp_path / "a.urdf", "urdf")
-    other = api.load(tmp_path / "a.urdf")
-    assert pair(Subject(robot, str(tmp_path / "a.xml")), Subject(other, None), LOOK).changed < renders.CHANGED
+    body = '<body name="egg"><geom type="ellipsoid" size="0.1 0.2 0.4" mass="1" rgba="0 0.5 0.5 1"/></body>'
+    assert through_urdf(body, tmp_path) < renders.CHANGED

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import itertools
+from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
 from mjmodels import read_text
+from PIL import Image
 
 import hymeko_x as hx
 from hymeko_x.frontends.mjcf.colours import with_mean_colours
@@ -55,6 +57,24 @@ def test_a_pattern_of_a_default_class_counts() -> None:
 def test_an_image_stays() -> None:
     found = robot('type="2d" file="wood.png"')
     assert with_mean_colours(found) is found
+
+
+@pytest.mark.parametrize("folder", ["", "images"])
+def test_a_cube_of_six_images_has_their_mean_colour(folder: str, tmp_path: Path) -> None:
+    sides = ("fileright", "fileleft", "fileup", "filedown", "filefront", "fileback")
+    (tmp_path / folder).mkdir(exist_ok=True)
+    for number, side in enumerate(sides):
+        Image.new("RGB", (4, 4), (51 * number, 255, 0)).save(tmp_path / folder / f"{side}.png")
+    images = " ".join(f'{side}="{side}.png"' for side in sides)
+    texture = f'<texture name="t" type="cube" {images}/>'
+    assets = f'<asset>{texture}<material name="m" texture="t"/></asset>'
+    head = f'<compiler texturedir="{folder}"/>' if folder else ""
+    ball = '<body name="b"><geom size="1" material="m"/></body>'
+    (tmp_path / "a.xml").write_text(f"<mujoco>{head}{assets}<worldbody>{ball}</worldbody></mujoco>")
+    hx.convert(tmp_path / "a.xml", tmp_path / "a.urdf")
+    assert '<color rgba="0.5 1 0 1"/>' in (tmp_path / "a.urdf").read_text()
+    hx.convert(tmp_path / "a.xml", tmp_path / "a.sdf")
+    assert "<diffuse>0.5 1 0 1</diffuse>" in (tmp_path / "a.sdf").read_text()
 
 
 def test_urdf_has_the_mean_colour_and_mjcf_comes_back_with_its_pattern() -> None:

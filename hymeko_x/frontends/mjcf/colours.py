@@ -1,7 +1,11 @@
-"""The colours of patterns: MuJoCo makes the image of a <texture builtin> itself, and multiplies it with the colour of material or shape."""
+"""The colours of patterns and of cubes of six images, which other formats cannot represent.
+
+MuJoCo multiplies the image of a <texture>, whether it makes it itself or reads it, with the colour of material or shape.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import math
 from operator import mul
 from typing import TYPE_CHECKING
@@ -10,15 +14,18 @@ from msgspec.structs import replace
 
 from hymeko_x.formats.mjcf.classes import Classes, merge
 from hymeko_x.formats.mjcf.tree import parse_text
-from hymeko_x.formats.mjcf.words import NAME
+from hymeko_x.formats.mjcf.words import NAME, compilers, joined, settings_of
 from hymeko_x.ir.mechanism import ROOT, end_of
 from hymeko_x.ir.parts import Layer, Material, Texture
+from hymeko_x.source import NO_FILES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from hymeko_x.formats.mjcf.codec import Settings
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
     from hymeko_x.ir.parts import Rgba
+    from hymeko_x.source import Files
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 _DECIMALS = 4
@@ -28,9 +35,15 @@ _FIRST = {"flat cube": 5.0 / 6.0, "flat 2d": 1.0, "checker cube": 0.5, "checker 
 """The part of the pixels that have the first colour of a pattern, by its type: a flat cube has the second colour on its lower side."""
 
 
-def with_mean_colours(mechanism: Mechanism) -> Mechanism:
-    """The mechanism in which materials and shapes with a pattern have the mean colour that MuJoCo shows, and the pattern is gone."""
-    layers = _patterned(mechanism)
+_SIDES = ("fileright", "fileleft", "fileup", "filedown", "filefront", "fileback")
+
+
+def with_mean_colours(mechanism: Mechanism, *, files: Files = NO_FILES) -> Mechanism:
+    """The mechanism in which materials and shapes with a pattern have the mean colour that MuJoCo shows, and the pattern is gone.
+
+    A cube of six images is treated as a pattern.
+    """
+    layers = _patterned(mechanism, files)
     if not layers:
         return mechanism
     means = dict(layers.values())
@@ -43,10 +56,12 @@ def with_mean_colours(mechanism: Mechanism) -> Mechanism:
     return mechanism.replace(vertices=materials, edges=edges, without=layers)
 
 
-def _patterned(mechanism: Mechanism) -> dict[Id, tuple[Id, Rgba]]:
+def _patterned(mechanism: Mechanism, files: Files) -> dict[Id, tuple[Id, Rgba]]:
     """The layers that colour a material with a pattern: the material, and the mean colour of the pattern."""
     classes = Classes(parse_text(extra.text) for extra in mechanism.extras.get(ROOT, ()) if extra.text.startswith("<default"))
-    means = {key: _mean(_attributes(mechanism, key, classes)) for key, texture in mechanism.vertices(Texture) if texture.uri is None}
+    made = {key: _attributes(mechanism, key, classes) for key, texture in mechanism.vertices(Texture) if texture.uri is None}
+    settings = settings_of([parse_text(text).attributes for text in compilers(mechanism)])
+    means = {key: _mean(texture) or _mean_of_sides(texture, settings, files) for key, texture in made.items()}
     found: dict[Id, tuple[Id, Rgba]] = {}
     for key, layer, arcs in mechanism.edges(Layer):
         mean = next((means.get(arc.target) for arc in arcs if arc.sign > 0), None)
@@ -73,6 +88,21 @@ def _mean(texture: Mapping[str, str]) -> Rgba | None:
     colours = ([float(number) for number in texture[name].split()] for name in ("rgb1", "rgb2", "markrgb"))
     red, green, blue = (sum(map(mul, parts, channels)) for channels in zip(*colours, strict=True))
     return (red, green, blue, 1.0) if all(map(math.isfinite, (red, green, blue))) else None
+
+
+def _mean_of_sides(texture: Mapping[str, str], settings: Settings, files: Files) -> Rgba | None:
+    """The mean colour of the images of the sides of a cube; None where there is none that can be read."""
+    from hymeko_x.meshes.images import UnreadableImage, pixels
+
+    means = []
+    for uri in [joined(settings.texture_folder, texture[side], settings) for side in _SIDES if side in texture]:
+        path = files.find(uri)
+        with contextlib.suppress(OSError, UnreadableImage):  # which MuJoCo refuses by itself
+            means.append(pixels(files.read(path or uri)).mean())
+    if not means:
+        return None
+    red, green, blue = (sum(channel) / len(means) for channel in zip(*means, strict=True))
+    return red, green, blue, 1.0
 
 
 def _marked(texture: Mapping[str, str]) -> float:

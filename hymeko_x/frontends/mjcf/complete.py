@@ -52,7 +52,7 @@ def complete(mechanism: Mechanism, printed: Printed, files: Files, report: Repor
     fitted primitives, the field of view of cameras, and the colours of patterns. Bodies without mass stay without an inertial. Where MuJoCo
     is not installed or refuses the text, only cameras and colours change, with an error (a warning where files are missing).
     """
-    mechanism = with_mean_colours(_with_fields_of_view(mechanism))
+    mechanism = with_mean_colours(_with_fields_of_view(mechanism), files=files)
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
     scaled = compiler_has(mechanism, _SCALES)
     sprung = mentions(mechanism, "springdamper")
