@@ -13,6 +13,7 @@ from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import relevant
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
+from hymeko_x.edits.unnamed import unnamed_bodies, with_same_numbers
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
@@ -73,7 +74,7 @@ class Conversion:
         """``notes`` are what restoring reports, which matters where there are edits."""
         self.format, self.options, self.report, self.notes = format, options, report, Report()
         since = len(report)
-        self.edited = pipeline.read_file(edited, format, report).mechanism
+        self.edited = self._read = pipeline.read_file(edited, format, report).mechanism
         pipeline.stop_on_errors(report, since, lenient=False)
         self.files, self.home = edited.files, home
         self.folder = os.path.dirname(edited.name) or "."
@@ -96,6 +97,7 @@ class Conversion:
         self._used = guess
         residue = residue_of(mechanism, guess.image)
         self._homes = homes = dict(residue.alignment.names)
+        self.edited = with_same_numbers(self._read, guess.image, self._unnamed_bodies())
         names = self._renames(guess.image)
         restored = restore(self._under(names, self._with_inertials(guess.image), guess.image), residue, notes).mechanism
         own = {new: homes.get(old, old) for new, old in names.given.items() if not _is_beside(new, old)}
@@ -135,7 +137,8 @@ class Conversion:
         home = self._homes.get(old, old)
         joint = self.mechanism.joints.get(home)
         is_of_body = joint is not None and len(joint.joint.dofs) != 1
-        return is_of_body or self.mechanism.notation(home, UNNAMED) is not None or _is_beside(new, old)
+        is_named = home in self.mechanism.graph and self.mechanism.notation(home, UNNAMED) is None
+        return is_of_body or not is_named or _is_beside(new, old)
 
     def _distance(self, image: Mechanism) -> int:
         """In how much the edited file differs from an image, apart from names."""
@@ -159,6 +162,11 @@ class Conversion:
         if old.kind == "actuator" and self._homes.get(old, old) not in self.mechanism.graph:
             return True
         return old.kind == "contact" or not (_has_name(self.edited, new) or _has_name(image, old))
+
+    def _unnamed_bodies(self) -> set[Id]:
+        """The ids in the image of the bodies of ORIGINAL that have no name."""
+        there = {home: key for key, home in self._homes.items()}
+        return {there.get(key, key) for key in unnamed_bodies(self.mechanism)}
 
     def _with_inertials(self, image: Mechanism) -> Mechanism:
         """The edited robot; a body without an inertial, where the image has one or has no such body, has what the engine computes."""

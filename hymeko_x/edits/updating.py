@@ -17,6 +17,7 @@ from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.edits.conversion import Conversion, new_assets
 from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
+from hymeko_x.edits.unnamed import unnamed_bodies, with_same_numbers
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import Body, Mesh, Texture
 from hymeko_x.residue.pairing import other_names
@@ -123,7 +124,8 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
         return Updated(first.before, (), original.data, {}, {}, {}, report)
     report.extend(conversion.notes)
     old = {path: original.data if path == original.name else original.files.read(path) for path in changed}
-    edits = diff(first.before, rename(found.before, _called_after(first.before, found.before)), TOLERANCE)
+    robot = with_same_numbers(found.before, first.before, unnamed_bodies(first.before))
+    edits = diff(first.before, rename(robot, _called_after(first.before, robot)), TOLERANCE)
     return Updated(replace(found.before, origins=first.before.origins), edits, original.data, changed, old, beside, report)
 
 

@@ -113,7 +113,7 @@ class _Pairs:
             self.pair(old[0], new[0])
             return
         own = self.names.get
-        self._match_by(old, new, lambda edge: _essence(self.image, edge, own), lambda edge: _essence(self.source, edge))
+        self._match_by(old, new, lambda edge: essence_of(self.image, edge, own), lambda edge: essence_of(self.source, edge))
         for key in old:
             if key in self.missing and _sort(self.source.edges[key]) == _sort(self.image.edges[key]):
                 self.pair(key, key)
@@ -152,7 +152,7 @@ def _doubtful(image: RobotGraph, source: RobotGraph) -> Iterator[Id]:
         if other is None or not isinstance(data, Shape) or not isinstance(other.data, Shape) or data.name or other.data.name:
             continue
         is_same = data.geometry == other.data.geometry and edge.arcs == other.arcs
-        if not is_same and _essence(image, edge) != _essence(source, other):
+        if not is_same and essence_of(image, edge) != essence_of(source, other):
             yield key
 
 
@@ -192,7 +192,7 @@ def _name_of(graph: RobotGraph, edge: RobotEdge) -> object:
 
 def _content(graph: RobotGraph, edge: RobotEdge) -> object:
     """The role of a shape, and what it is."""
-    return (edge.data.role, _essence(graph, edge)) if isinstance(edge.data, Shape) else None
+    return (edge.data.role, essence_of(graph, edge)) if isinstance(edge.data, Shape) else None
 
 
 def content_of(edge: RobotEdge) -> object:
@@ -202,13 +202,13 @@ def content_of(edge: RobotEdge) -> object:
     return (data.geometry, weights) if isinstance(data, Shape) else (data, weights)
 
 
-def _essence(graph: RobotGraph, edge: RobotEdge, own: Callable[[Id, Id], Id] = lambda key, _: key) -> object:
+def essence_of(graph: RobotGraph, edge: RobotEdge, own: Callable[[Id, Id], Id] = lambda key, _: key) -> object:
     """The content of an edge; of a shape also its sort, mesh and material (``own`` gives their ids), with rounded numbers."""
     if not isinstance(edge.data, Shape):
         return content_of(edge)
     assets = tuple([_asset(graph, arc.target, own) for arc in edge.arcs if arc.target.kind in ("mesh", "material")])
-    placed = [_rounded(arc.weight or IDENTITY) for arc in edge.arcs if arc.sign > 0]
-    return _sort(edge), _rounded(edge.data.geometry), tuple(placed), assets
+    placed = [rounded(arc.weight or IDENTITY) for arc in edge.arcs if arc.sign > 0]
+    return _sort(edge), rounded(edge.data.geometry), tuple(placed), assets
 
 
 def _asset(graph: RobotGraph, key: Id, own: Callable[[Id, Id], Id]) -> object:
@@ -222,16 +222,16 @@ def _file_of(graph: RobotGraph, key: Id) -> str | None:
     return file_stem(part.uri) if isinstance(part, Mesh | Texture) and part.uri else None
 
 
-def _rounded(value: object) -> object:
+def rounded(value: object) -> object:
     """A value whose numbers are rounded; a rotation is one of two quaternions."""
     if isinstance(value, float):
         return round(value, _DIGITS) + 0.0
     if isinstance(value, Pose):
-        return _rounded(value.xyz), _rounded(value.quat if value.quat[0] >= 0.0 else tuple([-number for number in value.quat]))
+        return rounded(value.xyz), rounded(value.quat if value.quat[0] >= 0.0 else tuple([-number for number in value.quat]))
     if isinstance(value, tuple):
-        return tuple(map(_rounded, value))
+        return tuple(map(rounded, value))
     layout = layout_of(type(value))
-    return value if layout is None else (type(value), _rounded(layout.compared(value)))
+    return value if layout is None else (type(value), rounded(layout.compared(value)))
 
 
 def _sort(edge: RobotEdge) -> object:

@@ -1,6 +1,7 @@
 """Joints of several dofs as chains of joints with one dof each, in the frame of their child.
 
-Bodies keep their frames: where a joint turns beside the frame of its child, a body without mass in between has the joint's frame.
+Bodies keep their frames: where a joint turns beside the frame of its child, and the format has no pose of a child in its joint, a body
+without mass in between has the joint's frame.
 So every body of the source is in the result, at the same place for the same coordinates.
 """
 
@@ -41,13 +42,18 @@ class _Chains(Struct):
     moved: dict[tuple[Id, int], tuple[Id, str]]
 
 
-def chain_dofs(mechanism: Mechanism, context: Context, chained: list[JointView], *, keeps_balls: bool = False) -> Mechanism:
-    """Each of these joints becomes a chain of joints with one dof; balls stay, or become three hinges about x, y and z."""
+def chain_dofs(
+    mechanism: Mechanism, context: Context, chained: list[JointView], *, keeps_balls: bool = False, poses_children: bool = False
+) -> Mechanism:
+    """Each of these joints becomes a chain of joints with one dof; balls stay, or become three hinges about x, y and z.
+
+    ``poses_children``: a child may be beside its joint's frame.
+    """
     if not chained:
         return mechanism
     chains = _Chains(names_in_use(mechanism), {}, {}, {})
     for view in chained:
-        count = _add_chain(view, chains, keeps_balls=keeps_balls)
+        count = _add_chain(view, chains, keeps_balls=keeps_balls, poses_children=poses_children)
         if count:
             message = f"{view.id} has dofs or a frame that the format cannot represent; it is written as a chain of {count + 1} joints"
             context.report.note(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
@@ -56,9 +62,10 @@ def chain_dofs(mechanism: Mechanism, context: Context, chained: list[JointView],
     return mechanism.replace(vertices=chains.vertices, edges=edges, without=old - set(chains.edges))
 
 
-def _add_chain(view: JointView, chains: _Chains, *, keeps_balls: bool) -> int:
+def _add_chain(view: JointView, chains: _Chains, *, keeps_balls: bool, poses_children: bool) -> int:
     """Add the chain of a joint; returns how many links it adds."""
     steps, offset = _steps(view, keeps_balls=keeps_balls)
+    beside, offset = (inverse(offset), IDENTITY) if steps and poses_children and offset != IDENTITY else (IDENTITY, offset)
     if not steps:
         chains.edges[view.id] = joint_edge(Joint(), view.parent, view.child, offset)
         return 0
@@ -71,7 +78,7 @@ def _add_chain(view: JointView, chains: _Chains, *, keeps_balls: bool) -> int:
             chains.vertices[body] = Body()
         key = _joint_name(view, step, last, chains)
         chains.moved[view.id, step.number] = (key, "")
-        chains.edges[key] = joint_edge(Joint((step.dof,)), parent, body, step.pose)
+        chains.edges[key] = joint_edge(Joint((step.dof,)), parent, body, step.pose, beside if last else IDENTITY)
         parent = body
     if offset != IDENTITY:
         chains.edges[chains.names.take("joint", f"{view.id.name}_frame")] = joint_edge(Joint(), parent, view.child, offset)

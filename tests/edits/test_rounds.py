@@ -190,3 +190,27 @@ def test_what_is_left_keeps_its_materials_when_a_body_is_removed_from_a_format_w
         'name="wall">',
         'type="box" size="1 0.1 1" material="wall"/>',
     ]
+
+
+PENDULUM = """<mujoco model="r">
+  <worldbody>
+    <body name="ball">
+      <joint name="x" axis="1 0 0"/>
+      <joint name="y" axis="0 1 0"/>
+      <geom name="bob" pos="0 0 -0.5" size="0.1"/>
+    </body>
+  </worldbody>
+  <actuator>
+    <position joint="x" gear="10"/>
+    <position joint="y" gear="10"/>
+  </actuator>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101", "HX023", "HX103")
+def test_a_link_that_is_moved_behind_several_joints_keeps_its_actuators(tmp_path: Path) -> None:
+    moved = ('<pose relative_to="y">0 0 0 0 0 0</pose>', '<pose relative_to="y">0 0.2 0 0 0 0</pose>')
+    after, notes = brought_home(tmp_path, "r.sdf", moved, text=PENDULUM)
+    assert [after.count(text) for text in (' pos="0 -0.2 0"', '<body name="ball" pos="0 0.2 0">', "<position")] == [2, 1, 2], after
+    assert notes == []

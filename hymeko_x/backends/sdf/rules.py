@@ -76,7 +76,8 @@ def chain_joints(mechanism: Mechanism, context: Context) -> Mechanism:
     """A joint with dofs that no SDF joint has becomes a chain of joints with one dof each."""
     if notations.is_from_sdf(mechanism):
         return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if words.default_type(view.joint) is None])
-    return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if not _is_joint(view)], keeps_balls=True)
+    chained = [view for view in mechanism.joints.values() if not _is_joint(view)]
+    return chain_dofs(mechanism, context, chained, keeps_balls=True, poses_children=True)
 
 
 def _is_joint(view: JointView) -> bool:

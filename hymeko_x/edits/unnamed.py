@@ -1,0 +1,88 @@
+"""Bodies to which their author gave no name: the numbers in their names say only where they stand, so they are found by what they are."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.names import Names, rename
+from hymeko_x.ir.notations import UNNAMED
+from hymeko_x.ir.parts import Body
+from hymeko_x.residue.pairing import essence_of, rounded
+from hymeko_x.rewrite.references import with_references
+
+if TYPE_CHECKING:
+    from collections.abc import Set
+
+    from hymeko_x.ir.mechanism import Mechanism
+
+
+def unnamed_bodies(robot: Mechanism) -> set[Id]:
+    """The bodies that have no name in the robot's format."""
+    return {key for key, _ in robot.vertices(Body) if robot.notation(key, UNNAMED) is not None}
+
+
+def with_same_numbers(edited: Mechanism, image: Mechanism, unnamed: Set[Id]) -> Mechanism:
+    """The edited robot, in which each of these bodies, and what is called after it, has the number that it has in the image."""
+    bodies = {new.name: old.name for new, old in _same_bodies(edited, image, unnamed).items()}
+    if not bodies:
+        return edited
+    there = {*edited.graph.vertices, *edited.graph.edges}
+    names: dict[Id, Id] = {}
+    for key in there:
+        body, stroke, rest = key.name.partition("/")
+        if body in bodies:
+            names[key] = Id(key.kind, f"{bodies[body]}{stroke}{rest}")
+    free = Names((*there, *names.values()))
+    for key in sorted(set(names.values()) & there - names.keys()):  # what is called as another one was, such as the joint of a renamed body
+        view = edited.joints.get(key)
+        names[key] = free.take(key.kind, key.name if view is None else view.child.name)
+    return with_references(rename(edited, names), names)
+
+
+def _same_bodies(edited: Mechanism, image: Mechanism, unnamed: Set[Id]) -> dict[Id, Id]:
+    """The id in the image of each body of the edited robot that is one of these, where it goes by another number. Linear.
+
+    Under one parent those are the same that have one id and one content, then one content, then one id. What is called otherwise than by
+    another number has got a name since, and is left out.
+    """
+    pairs: dict[Id, Id] = {}
+    if unnamed.isdisjoint(image.graph.vertices):
+        return pairs
+    theirs = {parent: [view.child for view in views if view.child in unnamed] for parent, views in image.children.items()}
+    for parent in (*(key for key in edited.children if key.kind == "world"), *edited.depth_first()):
+        waiting = theirs.get(pairs.get(parent, parent))
+        if waiting:
+            mine = [view.child for view in edited.children.get(parent, ()) if view.child in unnamed or view.child not in image.graph]
+            pairs |= _same(edited, mine, image, waiting)
+    return {new: old for new, old in pairs.items() if new != old and _stem(new) == _stem(old)}
+
+
+def _stem(key: Id) -> str:
+    """The name without the number behind it."""
+    return key.name.rstrip("0123456789").rstrip("#_")
+
+
+def _same(edited: Mechanism, mine: list[Id], image: Mechanism, theirs: list[Id]) -> dict[Id, Id]:
+    """The pairs among the children of one body."""
+    contents = {key: _content(image, key) for key in theirs}
+    own = {key: _content(edited, key) for key in mine}
+    pairs = {key: key for key in mine if contents.get(key) == own[key]}
+    waiting: dict[object, list[Id]] = defaultdict(list)
+    for key in reversed(theirs):
+        if key not in pairs:
+            waiting[contents[key]].append(key)
+    for key in mine:
+        if key not in pairs and (same := waiting.get(own[key])):
+            pairs[key] = same.pop()
+    left = {*theirs}.difference(pairs.values())
+    return pairs | {key: key for key in mine if key not in pairs and key in left}
+
+
+def _content(robot: Mechanism, body: Id) -> object:
+    """What a body is, where it is, and what it has."""
+    view = robot.parent_joint[body]
+    shapes = [essence_of(robot.graph, robot.graph.edges[shape.id]) for shape in robot.shapes.get(body, ())]
+    joint = [(dof.kind, rounded(dof.axis)) for dof in view.joint.dofs]
+    return rounded(view.parent_pose), rounded(view.child_pose), tuple(joint), rounded(robot.vertex(body, Body)), tuple(shapes)
