@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -16,7 +15,7 @@ from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Actuator, Drive, Tendon
 from hymeko_x.ir.tendons import FIXED
 from hymeko_x.rewrite.servos import loads, parameters_of
-from hymeko_x.rewrite.transmissions import KINDS, is_scalar, is_transmission, moved_otherwise
+from hymeko_x.rewrite.transmissions import HARDWARE_INTERFACE, KINDS, is_scalar, is_transmission, moved_otherwise
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Parameters
     from hymeko_x.rewrite.context import Context
 
-_INTERFACE = re.compile(r"<hardwareInterface>\s*(?:\w+/)?(\w+)\s*<")
 _SHARES: Mapping[str, tuple[tuple[float, float], tuple[float, float]]] = MappingProxyType(
     {"DifferentialTransmission": ((1.0, 1.0), (1.0, -1.0)), "FourBarLinkageTransmission": ((1.0, 0.0), (1.0, 1.0))}
 )
@@ -106,7 +104,7 @@ def _reduction(arc: RobotArc) -> float:
 
 def _kind(mechanism: Mechanism, key: Id) -> str | None:
     """The actuator of the first interface of the joints that takes commands; a motor where there is no interface."""
-    names = [found[1] for extra in mechanism.extras.get(key, ()) if (found := _INTERFACE.search(extra.text))]
+    names = [found[1] for extra in mechanism.extras.get(key, ()) if (found := HARDWARE_INTERFACE.search(extra.text))]
     return next((KINDS[name] for name in names if name in KINDS), None) if names else "motor"
 
 

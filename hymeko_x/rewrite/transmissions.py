@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 _INTERFACES = ("hardwareInterface", "command_interface")
 """Parameters of a drive or an actuator that name what the hardware is commanded."""
+HARDWARE_INTERFACE = re.compile(r"<hardwareInterface>\s*(?:\w+/)?(\w+)\s*<")
+"""The interface that an element of a transmission names, without its package."""
 KINDS: Mapping[str, str] = MappingProxyType(
     {
         "position": "position",
@@ -98,11 +101,16 @@ def _commands(mechanism: Mechanism) -> list[_Command]:
 
 def moved_otherwise(mechanism: Mechanism) -> set[Id]:
     """The joints that follow another one, or that an actuator drives already."""
-    found = {arc.target for _, _, arcs in mechanism.edges(Coupling) for arc in arcs if arc.sign > 0}
+    found = followers(mechanism)
     for _, _, arcs in mechanism.edges(Drive):
         if not all(is_transmission(mechanism, arc.target) for arc in arcs if arc.sign > 0):
             found |= {arc.target for arc in arcs if arc.sign < 0}
     return found
+
+
+def followers(mechanism: Mechanism) -> set[Id]:
+    """The joints that follow another one."""
+    return {arc.target for _, _, arcs in mechanism.edges(Coupling) for arc in arcs if arc.sign > 0}
 
 
 def is_transmission(mechanism: Mechanism, actuator: Id) -> bool:

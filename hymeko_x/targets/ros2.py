@@ -17,11 +17,12 @@ from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, joint_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import Actuator, Contact, Coupling, DofKind, Drive, PoseSet, Role, Tendon
+from hymeko_x.ir.parts import Actuator, Contact, DofKind, Drive, PoseSet, Role, Tendon
 from hymeko_x.rewrite.apart import call_joints_apart
 from hymeko_x.rewrite.mimics import put_leaders_first
 from hymeko_x.rewrite.poses import name_poses
 from hymeko_x.rewrite.roots import floating_joint, leave_scenery_out
+from hymeko_x.rewrite.transmissions import followers
 from hymeko_x.xml.printing import Tag, render
 
 if TYPE_CHECKING:
@@ -102,13 +103,14 @@ def declare_groups(mechanism: Mechanism, context: Context) -> Mechanism:
     own = mechanism.extras.get(ROOT, ())
     if any(extra.path == srdf.PATH and extra.text.startswith("<group ") for extra in own):
         return mechanism
-    following = {arc.target for _, _, arcs in mechanism.edges(Coupling) for arc in arcs if arc.sign > 0}
+    following = followers(mechanism)
     driven = set(_driven(mechanism))
     moving = [view.id for view in mechanism.joints.values() if _moves(view.joint.dofs) and view.id not in following]
     group = [key for key in moving if not driven or key in driven] or moving
     if not group:
         return mechanism
-    passive = [key for key in moving if key not in group] if any(True for _ in mechanism.vertices(Actuator)) else []
+    chosen = set(group)
+    passive = [key for key in moving if key not in chosen] if any(True for _ in mechanism.vertices(Actuator)) else []
     joints = Tag("group", {"name": srdf.ALL}, [Tag("joint", {"name": key.name}) for key in group])
     tags = [joints, *(Tag("passive_joint", {"name": key.name}) for key in passive)]
     extras = tuple(Extra(words.FORMAT, srdf.PATH, "".join(line.strip() for line in render(tag))) for tag in tags)

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.backends.urdf.ros_control import add_transmission, followers, transmissions, with_commands, without_followers
+from hymeko_x.backends.urdf.ros_control import add_transmission, transmissions, with_commands
 from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import urdf as urdf_words
 from hymeko_x.formats.urdf import ros2_control as words
 from hymeko_x.ir.mechanism import ROOT, Extra, end_of, numbers_weight
 from hymeko_x.ir.parts import Actuator, Drive, Stance
 from hymeko_x.ir.values import number_text, numbers_text
+from hymeko_x.rewrite.transmissions import followers
 from hymeko_x.xml.printing import Tag, ready
 from hymeko_x.xml.text import escaped
 
@@ -56,8 +57,9 @@ def declare_ros2_control(mechanism: Mechanism, context: Context) -> Mechanism:
 def _moved(mechanism: Mechanism, commands: dict[Id, list[Command]], context: Context) -> list[Transmission]:
     """The transmissions of ROS 1 that are written in the system, of joints that nothing else drives; the others are reported."""
     found, left = transmissions(mechanism)
-    moved = [one for one in without_followers(found, followers(mechanism)) if commands.keys().isdisjoint(one.commands)]
-    left += [one.key for one in found if one not in moved]
+    taken = {*followers(mechanism), *commands}
+    moved = [one for one in found if taken.isdisjoint(one.commands)]
+    left += [one.key for one in found if not taken.isdisjoint(one.commands)]
     if left:
         kinds = {key: drive.kind.rpartition("/")[2] for key, drive, _ in mechanism.edges(Drive)}
         names = listed([f"'{key.name}' ({kinds[key]})" for key in left], _SHOWN)

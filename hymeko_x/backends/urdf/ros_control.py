@@ -16,13 +16,14 @@ from hymeko_x.formats.urdf import ros2_control as words
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.names import names_in_use
-from hymeko_x.ir.parts import Actuator, Coupling, Drive
+from hymeko_x.ir.parts import Actuator, Drive
 from hymeko_x.ir.values import number_text
 from hymeko_x.rewrite.roots import without
+from hymeko_x.rewrite.transmissions import HARDWARE_INTERFACE, is_transmission
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
     from hymeko_x.xml.printing import Tag
@@ -40,7 +41,6 @@ _OLD: Mapping[str, tuple[str, ...]] = MappingProxyType(
 _ENDS: Mapping[str, int] = MappingProxyType({"SimpleTransmission": 1, "DifferentialTransmission": 2, "FourBarLinkageTransmission": 2})
 """The transmissions that ROS 2 has as well, with their numbers of joints and of actuators."""
 _LIBRARY = "transmission_interface/"
-_INTERFACE = re.compile(r"<hardwareInterface>\s*(?:\w+/)?(\w+)\s*<")
 _OFFSET = re.compile(r"<offset>\s*([^<\s]+)\s*<")
 
 
@@ -59,22 +59,18 @@ def transmissions(mechanism: Mechanism) -> tuple[list[Transmission], list[Id]]:
     """The transmissions that ROS 2 has as well, one for each joint, and the others."""
     found: list[Transmission] = []
     left: list[Id] = []
+    taken: set[Id] = set()
     for key, drive, arcs in mechanism.edges(Drive):
         ends = [arc for arc in arcs if arc.sign > 0]
-        if not ends or not all(_is_plain(mechanism, arc.target) for arc in ends) or drive.kind == words.TAG:
+        if not ends or not all(is_transmission(mechanism, arc.target) for arc in ends) or drive.kind == words.TAG:
             continue
         made = _transmission(mechanism, key, drive, arcs)
-        taken = {arc.target for one in found for arc in one.joints}
         if made is None or not taken.isdisjoint(made.commands):
             left.append(key)
         else:
             found.append(made)
+            taken.update(made.commands)
     return found, left
-
-
-def _is_plain(mechanism: Mechanism, actuator: Id) -> bool:
-    part = mechanism.graph.vertices.get(actuator)
-    return isinstance(part, Actuator) and part.kind == "transmission"
 
 
 def _transmission(mechanism: Mechanism, key: Id, drive: Drive, arcs: tuple[RobotArc, ...]) -> Transmission | None:
@@ -90,7 +86,7 @@ def _transmission(mechanism: Mechanism, key: Id, drive: Drive, arcs: tuple[Robot
     for number, arc in enumerate(joints, 1):
         path = "joint" if number == 1 else f"joint[{number}]"
         texts = [extra.text for extra in mechanism.extras.get(key, ()) if extra.path == path] + (own if len(joints) == 1 else [])
-        names = [found[1] for text in texts if (found := _INTERFACE.search(text))]
+        names = [found[1] for text in texts if (found := HARDWARE_INTERFACE.search(text))]
         commands[arc.target] = [*dict.fromkeys(new for name in names for new in _OLD.get(name, ()))] if names else [words.EFFORT]
         offset = next((found[1] for text in texts if (found := _OFFSET.search(text))), "")
         if offset and (read_numbers(offset) or (0.0,))[0]:
@@ -138,14 +134,4 @@ def with_commands(
 
 
 def _is_moved(text: str) -> bool:
-    return bool(_INTERFACE.match(text) or _OFFSET.match(text))
-
-
-def followers(mechanism: Mechanism) -> set[Id]:
-    """The joints that follow another one, which ros2_control commands by their leader."""
-    return {arc.target for _, _, arcs in mechanism.edges(Coupling) for arc in arcs if arc.sign > 0}
-
-
-def without_followers(found: Iterable[Transmission], following: set[Id]) -> Iterator[Transmission]:
-    """The transmissions of joints that follow no other one."""
-    return (one for one in found if following.isdisjoint(one.commands))
+    return bool(HARDWARE_INTERFACE.match(text) or _OFFSET.match(text))
