@@ -162,3 +162,35 @@ def test_what_cannot_be_shared_is_refused(edge: str) -> None:
     with pytest.raises(Refusal) as caught:
         hx.loads(f"r : robot {{ a {{}} b {{}} c {{}} d {{}} {edge} }}", "hymeko")
     assert REFUSED[edge] in str(caught.value)
+
+
+def test_a_comment_stays_beside_the_child_at_which_it_stands() -> None:
+    text = f"r : robot {{ palm {BODY} left {BODY} right {BODY} thumb {BODY}\n// first\n@m : fixed {{\n+ palm // palm\n- left\n"
+    text += "// on the right\n[0 0 1] - right // behind it\n/* at last */ [0 0 2] - thumb } }"
+    printed = hx.dumps(read(text), "hymeko")
+    assert printed.partition("// first\n")[2].split("\n") == [
+        "  @m : fixed {",
+        "    // palm",
+        "    + palm - left",
+        "    // on the right",
+        "    // behind it",
+        "    [0 0 1] - right",
+        "    // at last",
+        "    [0 0 2] - thumb",
+        "  }",
+        "}",
+        "",
+    ]
+
+
+def test_joints_with_a_comment_between_them_are_edges_of_their_own() -> None:
+    joints = "@m : fixed { + palm - left }\n@m_2 : fixed { + palm - right }\n// the thumb\n@m_3 : fixed { + palm - thumb }\n// behind"
+    printed = hx.dumps(read(f"r : robot {{ palm {BODY} left {BODY} right {BODY} thumb {BODY}\n{joints}\n}}"), "hymeko")
+    assert printed.partition("@m")[2].split("\n") == [
+        " : fixed { + palm - left - right }",
+        "  // the thumb",
+        "  @m_3 : fixed { + palm - thumb }",
+        "  // behind",
+        "}",
+        "",
+    ]

@@ -5,6 +5,7 @@ Elements stand in the order in which their author wrote them (``Mechanism.layout
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
@@ -76,9 +77,10 @@ def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
         ExplicitAngles() if flat else shortest_angles(mechanism),
         nesting=nesting_of(mechanism, name),
         around=around,
-        shared={} if flat else shared_joints(mechanism, mimics),
         is_flat=flat,
     )
+    if not flat:
+        sheet = replace(sheet, names={}, shared=shared_joints(mechanism, mimics, _behind_comments(sheet)))
     items = _settings(sheet, plain)
     items += [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})] if plain or flat else _grouped(sheet)
     header = mechanism.name if root is not None else ""
@@ -204,6 +206,13 @@ def _rows(sheet: HymekoSheet) -> list[Row]:
         rows.append(key)
         place += 2 if key in sheet.attached else 1 + len(sheet.shared.get(key, ()))
     return [*rows, queue[::-1]] if queue else rows
+
+
+def _behind_comments(sheet: HymekoSheet) -> frozenset[Id]:
+    """The elements with a comment before them."""
+    rows = _rows(sheet) if any(extra.format == "comment" for extra in sheet.mechanism.extras.get(ROOT, ())) else []
+    pairs = ((before, row) for before, row in pairwise(rows) if isinstance(before, list) and isinstance(row, Id))
+    return frozenset(row for before, row in pairs if any(extra.format == "comment" for extra in before))
 
 
 def _texts(within: Mapping[str, HymekoSheet], row: Row, homes: Mapping[Id, str]) -> list[Item]:

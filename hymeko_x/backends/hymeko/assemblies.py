@@ -86,12 +86,17 @@ def _members(rows: Sequence[Row], sheet: HymekoSheet, refused: frozenset[str]) -
     """By the beginnings of names, up to an underscore, the places of their elements; in assemblies comments in a block are not kept."""
     members: dict[str, list[int]] = {}
     for place, row in enumerate(rows):
-        if not isinstance(row, Id) or row.kind == _BARE or any(extra.format == "comment" for extra in sheet.mechanism.extras.get(row, ())):
+        if not isinstance(row, Id) or row.kind == _BARE or _has_comments(row, sheet):
             continue
         for prefix in _prefixes(row.name):
             if prefix not in refused:
                 members.setdefault(prefix, []).append(place)
     return members
+
+
+def _has_comments(row: Id, sheet: HymekoSheet) -> bool:
+    keys = (row, *sheet.shared.get(row, ()))
+    return any(extra.format == "comment" for key in keys for extra in sheet.mechanism.extras.get(key, ()))
 
 
 def _prefixes(name: str) -> Iterator[str]:

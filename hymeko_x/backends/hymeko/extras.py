@@ -111,11 +111,18 @@ def sound_comment(text: str) -> bool:
     return text == text.strip() and "\0" not in text and ("*/" not in text or "\n" not in text) and "\r" not in text
 
 
-def _comments(extras: list[Extra]) -> list[Item]:
+def is_comment_in_block(extra: Extra) -> bool:
+    """Whether an extra of an element is a comment that reads back as it is from the element's block."""
+    return extra.format == "comment" and not extra.path and sound_comment(extra.text)
+
+
+def comments_of(extras: Iterable[Extra]) -> list[Item]:
     """The comments of an element, in order."""
-    if not all(sound_comment(extra.text) and not extra.path for extra in extras):
-        return [verbatim(extra) for extra in extras]
     return [Comment(extra.text) for extra in sorted(extras, key=lambda extra: extra.index)]
+
+
+def _comments(extras: list[Extra]) -> list[Item]:
+    return comments_of(extras) if all(map(is_comment_in_block, extras)) else [verbatim(extra) for extra in extras]
 
 
 def _of_format(format: str, extras: list[Extra], *, at_root: bool) -> list[Item]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x.backends.hymeko.extras import comments_of
 from hymeko_x.backends.hymeko.parts import limit_items, word_fields
 from hymeko_x.backends.hymeko.sharing import ratio_of
 from hymeko_x.backends.hymeko.values import pose_value
@@ -37,7 +38,9 @@ def joint_items(sheet: HymekoSheet, key: Id) -> tuple[str, list[Item]]:
     framed = not identical(view.child_pose, IDENTITY)
     if framed or followers or view.child != _implied_child(sheet, key):
         items.append(_end(sheet, view.child, "-", view.child_pose, "at" if framed else ""))
-    items.extend(_follower(sheet, view.parent_pose, sheet.mechanism.joints[follower]) for follower in followers)
+    for follower in followers:
+        items += comments_of(sheet.mechanism.extras.get(follower, ()))
+        items.append(_follower(sheet, view.parent_pose, sheet.mechanism.joints[follower]))
     dofs = view.joint.dofs
     kind = words.JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
     if kind == "compound":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x.backends.hymeko.extras import is_comment_in_block
 from hymeko_x.formats.hymeko.sharing import follower_dof, follower_name
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
@@ -11,15 +12,20 @@ from hymeko_x.ir.mechanism import Id, numbers_weight
 from hymeko_x.ir.values import IDENTITY
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Container, Iterator, Mapping
 
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
 
-def shared_joints(mechanism: Mechanism, mimics: Mapping[Id, tuple[RobotArc, ...]]) -> Mapping[Id, tuple[Id, ...]]:
-    """The joints in whose edge the children of others stand, with those others: named after it, behind it, and exactly following it."""
+def shared_joints(
+    mechanism: Mechanism, mimics: Mapping[Id, tuple[RobotArc, ...]], noted: Container[Id] = ()
+) -> Mapping[Id, tuple[Id, ...]]:
+    """The joints in whose edge the children of others stand, with those others: named after it, behind it, and exactly following it.
+
+    Those that are ``noted`` have a comment before them and stand alone.
+    """
     found: dict[Id, tuple[Id, ...]] = {}
-    following = dict(zip(mechanism.layout, mechanism.layout[1:], strict=False))
+    following = {key: then for key, then in zip(mechanism.layout, mechanism.layout[1:], strict=False) if then not in noted}
     for second in mechanism.joints:
         leader = Id("joint", second.name.removesuffix("_2"))
         if leader != second and leader in mechanism.joints:
@@ -57,7 +63,11 @@ def _is_alike(mechanism: Mechanism, mimics: Mapping[Id, tuple[RobotArc, ...]], l
     """Whether the edge of the first joint says everything about the other one but its child, its pose and its ratio."""
     first, other = mechanism.joints[leader], mechanism.joints[key]
     dofs = first.joint.dofs
-    if key in mechanism.extras or key in mechanism.notations or len(mechanism.graph.incidence.get(key, ())) != len(dofs):
+    if (
+        not all(map(is_comment_in_block, mechanism.extras.get(key, ())))
+        or key in mechanism.notations
+        or len(mechanism.graph.incidence.get(key, ())) != len(dofs)
+    ):
         return False  # a coupling is an edge at the joint
     if mechanism.stereotypes.get(key) != mechanism.stereotypes.get(leader) or first.parent != other.parent or len(dofs) > 1:
         return False

@@ -13,7 +13,7 @@ from hymeko_x.frontends.hymeko.builder import sign_of
 from hymeko_x.frontends.hymeko.extras import is_foreign
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import coupling_edge
-from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_field
+from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, Ref, is_field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -78,10 +78,11 @@ def _split(element: Element, ends: _Ends, reader: ValueReader) -> list[Element]:
     """The joints of an edge: the one of its first child, and those that follow it."""
     node = element.node
     first, *others = ends.children
+    beside = _comments_beside(node.items, others)
     if first.items:
         message = f"the first child of '{node.name}' moves by the joint's own coordinate; '{RATIO}' is for the others"
         raise reader.refuse(first, message, hint="the child that moves by 1 stands first")
-    left_out = {id(arc) for arc in (*ends.parents, *ends.children)}
+    left_out = {id(item) for item in (*ends.parents, *ends.children, *(item for found in beside.values() for item in found))}
     own = [item for item in node.items if id(item) not in left_out]
     common = [item for item in own if id(item) not in map(id, ends.compliant) and not _is_of_first(item)]
     split = [element._replace(node=node._replace(items=(*own, *_joined(ends.parents, first))))]
@@ -89,11 +90,27 @@ def _split(element: Element, ends: _Ends, reader: ValueReader) -> list[Element]:
         name = follower_name(node.name, number)
         leader = ArcItem(Ref((node.name,), "-"), FOLLOWS, (_ratio(arc, reader),), (), arc.line, arc.column)
         role = arc.role or (first.role if first.role.upper() in ROLE_MOVES else "")
-        items = (*common, *_joined(ends.parents, arc._replace(items=(), role=role)), leader)
+        items = (*beside[id(arc)], *common, *_joined(ends.parents, arc._replace(items=(), role=role)), leader)
         element.scope.elements.add(name)
         follower = node._replace(name=name, items=items, line=arc.line, column=arc.column)
         split.append(element._replace(name=element.scope.full(name), node=follower))
     return split
+
+
+def _comments_beside(items: Sequence[Item], children: Sequence[ArcItem]) -> dict[int, list[Item]]:
+    """The comments right before each child's arc, or behind it in the same line, by the arc's id."""
+    found: dict[int, list[Item]] = {id(arc): [] for arc in children}
+    waiting: list[Item] = []
+    last: Item | None = None
+    for item in items:
+        if not isinstance(item, Comment):
+            found.get(id(item), []).extend(waiting)
+            waiting, last = [], item
+        elif last is None or last.line != item.line:
+            waiting.append(item)
+        else:
+            found.get(id(last), []).append(item)
+    return found
 
 
 def _joined(parents: list[ArcItem], child: ArcItem) -> list[ArcItem]:
