@@ -15,7 +15,7 @@ from hymeko_x.edits.updating import Updated
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.names import free_name, rename
-from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Drive, Ellipsoid, Inertial, Joint, Shape, Sphere
+from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Inertial, Joint, Shape, Sphere
 from hymeko_x.ir.values import numbers_text
 from hymeko_x.residue.originals import files_of
 from hymeko_x.rewrite.apart import names_apart
@@ -23,7 +23,7 @@ from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.decimals import shorten_computed
 from hymeko_x.rewrite.densities import WATER, give_inertials
 from hymeko_x.rewrite.inertia import physical
-from hymeko_x.rewrite.mimics import leaders_first
+from hymeko_x.rewrite.mimics import driven_joints, leaders_first
 from hymeko_x.rewrite.references import with_references
 from hymeko_x.validation import LEAST_MASS, UNIT_LENGTH, tensor_fault
 
@@ -140,10 +140,9 @@ def _name_apart(mechanism: Mechanism, context: Context) -> Mechanism:
 
 def _lead_first(mechanism: Mechanism, context: Context) -> Mechanism:
     """Joints follow the one of them that comes first in the tree, unless that takes the lead from a joint with an actuator."""
-    turned = leaders_first(mechanism)
-    followers = {edge.arcs[0].target for edge in turned.values()}
-    if any(arc.target in followers for _, _, arcs in mechanism.edges(Drive) for arc in arcs):
-        return mechanism
+    turned, driven = leaders_first(mechanism), set(driven_joints(mechanism))
+    left = {edge.arcs[1].target for edge in turned.values() if edge.arcs[0].target in driven}
+    turned = {key: edge for key, edge in turned.items() if edge.arcs[1].target not in left}
     for key, edge in turned.items():
         if edge != mechanism.graph.edges[key]:
             _note(context, mechanism, key, f"{edge.arcs[0].target} follows {edge.arcs[1].target}, which comes first in the tree")

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.ir.mechanism import coupling_edge, numbers_weight
-from hymeko_x.ir.parts import Coupling
+from hymeko_x.ir.parts import Coupling, Drive, Tendon
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Container, Iterator, Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
     from hymeko_x.rewrite.context import Context
@@ -35,24 +35,52 @@ def put_leaders_first(mechanism: Mechanism, context: Context) -> Mechanism:
 
     That is the order of urdfdom, and so that of Pinocchio. Only groups with a follower before its leader, or as one, change.
     """
-    turned = leaders_first(mechanism)
+    return _reported(mechanism, leaders_first(mechanism), "comes first in the tree", context)
+
+
+def put_driven_first(mechanism: Mechanism, context: Context) -> Mechanism:
+    """As :func:`put_leaders_first`, but joints follow one with an actuator where there is one: ros2_control commands no follower."""
+    driven = frozenset(driven_joints(mechanism))
+    return _reported(mechanism, leaders_first(mechanism, driven), "comes first in the tree, or has the actuator", context)
+
+
+def _reported(mechanism: Mechanism, turned: dict[Id, RobotEdge], why: str, context: Context) -> Mechanism:
+    """The mechanism with turned couplings, each of them reported."""
     for key, edge in turned.items():
         if edge != mechanism.graph.edges[key]:
-            message = f"{edge.arcs[0].target} follows {edge.arcs[1].target}, which comes first in the tree ({context.reason})"
+            message = f"{edge.arcs[0].target} follows {edge.arcs[1].target}, which {why} ({context.reason})"
             context.report.note(codes.FOR_TARGET, message, mechanism.origin(key), element=str(key))
     return mechanism.replace(edges=turned)
 
 
-def leaders_first(mechanism: Mechanism) -> dict[Id, RobotEdge]:
-    """The couplings of those groups as they are when all follow the joint that comes first."""
+def driven_joints(mechanism: Mechanism) -> Iterator[Id]:
+    """The joints that an actuator drives, by itself or by a tendon."""
+    for _, _, arcs in mechanism.edges(Drive):
+        for arc in arcs:
+            tendon = mechanism.graph.edges.get(arc.target) if arc.sign < 0 else None
+            yield from [arc.target] if tendon is None or not isinstance(tendon.data, Tendon) else [end.target for end in tendon.arcs]
+
+
+def leaders_first(mechanism: Mechanism, driven: Container[Id] = ()) -> dict[Id, RobotEdge]:
+    """The couplings of those groups as they are when all follow one joint: the one that comes first, a driven one before all others."""
     lines = dict(_lines(mechanism))
     order = _visited(mechanism) if lines else {}
     turned: dict[Id, RobotEdge] = {}
     for group in _groups(lines):
-        following = {lines[key].follower for key in group}
-        if any(order[lines[key].follower] < order[lines[key].leader] or lines[key].leader in following for key in group):
-            turned |= _turned(group, lines, order)
+        joints = {joint for key in group for joint in (lines[key].follower, lines[key].leader)}
+        first = min(joints, key=lambda joint: (joint not in driven, order[joint]))
+        if (first in driven and any(lines[key].follower == first for key in group)) or _is_late(
+            [lines[key] for key in group], first, order
+        ):
+            turned |= _turned(group, lines, first)
     return turned
+
+
+def _is_late(group: list[_Mimic], first: Id, order: Mapping[Id, int]) -> bool:
+    """Whether a joint of a group follows one behind it in the tree, or one that follows as well; none does where all follow the first."""
+    following = {mimic.follower for mimic in group}
+    is_late = any(order[mimic.follower] < order[mimic.leader] or mimic.leader in following for mimic in group)
+    return is_late and any(mimic.leader != first for mimic in group)
 
 
 class _Mimic(NamedTuple):
@@ -112,14 +140,13 @@ def _groups(lines: Mapping[Id, _Mimic]) -> Iterator[list[Id]]:
             yield group
 
 
-def _turned(group: list[Id], lines: Mapping[Id, _Mimic], order: Mapping[Id, int]) -> dict[Id, RobotEdge]:
-    """The couplings of a group with the joint that comes first as the leader of all. A joint that is reached twice keeps its first line."""
+def _turned(group: list[Id], lines: Mapping[Id, _Mimic], first: Id) -> dict[Id, RobotEdge]:
+    """The couplings of a group with one joint as the leader of all. A joint that is reached twice keeps its first line."""
     beside: dict[Id, list[tuple[Id, Id, _Line]]] = {}
     for key in group:
         mimic = lines[key]
         beside.setdefault(mimic.leader, []).append((key, mimic.follower, mimic.line))
         beside.setdefault(mimic.follower, []).append((key, mimic.leader, mimic.line.inverse))
-    first = min(beside, key=lambda joint: order[joint])
     found: dict[Id, _Line] = {first: _Line(0.0, 1.0)}
     edges: dict[Id, RobotEdge] = {}
     waiting = [first]

@@ -17,9 +17,9 @@ from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, joint_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import Actuator, Contact, DofKind, Drive, PoseSet, Role, Tendon
+from hymeko_x.ir.parts import Actuator, Contact, DofKind, PoseSet, Role
 from hymeko_x.rewrite.apart import call_joints_apart
-from hymeko_x.rewrite.mimics import put_leaders_first
+from hymeko_x.rewrite.mimics import driven_joints, put_driven_first
 from hymeko_x.rewrite.poses import name_poses
 from hymeko_x.rewrite.roots import floating_joint, leave_scenery_out
 from hymeko_x.rewrite.transmissions import followers
@@ -104,7 +104,7 @@ def declare_groups(mechanism: Mechanism, context: Context) -> Mechanism:
     if any(extra.path == srdf.PATH and extra.text.startswith("<group ") for extra in own):
         return mechanism
     following = followers(mechanism)
-    driven = set(_driven(mechanism))
+    driven = set(driven_joints(mechanism))
     moving = [view.id for view in mechanism.joints.values() if _moves(view.joint.dofs) and view.id not in following]
     group = [key for key in moving if not driven or key in driven] or moving
     if not group:
@@ -120,14 +120,6 @@ def declare_groups(mechanism: Mechanism, context: Context) -> Mechanism:
     return replace(mechanism, extras={**mechanism.extras, ROOT: (*own, *extras)})
 
 
-def _driven(mechanism: Mechanism) -> Iterator[Id]:
-    """The joints that an actuator drives, by itself or by a tendon."""
-    for _, _, arcs in mechanism.edges(Drive):
-        for arc in arcs:
-            tendon = mechanism.graph.edges.get(arc.target) if arc.sign < 0 else None
-            yield from [arc.target] if tendon is None or not isinstance(tendon.data, Tendon) else [end.target for end in tendon.arcs]
-
-
 def _moves(dofs: tuple[object, ...]) -> bool:
     return len(dofs) == 1 and getattr(dofs[0], "kind", None) in (DofKind.HINGE, DofKind.SLIDE)
 
@@ -137,7 +129,7 @@ RULES: tuple[Rule, ...] = (
     let_base_float_in_srdf,
     name_poses,
     call_joints_apart,
-    put_leaders_first,
+    put_driven_first,
     give_reasons,
     exclude_neighbours,
     declare_groups,

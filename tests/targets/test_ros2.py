@@ -47,6 +47,7 @@ ARM = """
 </mujoco>
 """
 FIXED = ARM.replace("BASE", "").replace("QPOS", "")
+DRIVEN_THUMB = FIXED.replace('"c_right" ctrlrange', '"a_thumb" ctrlrange')
 FLOATING = ARM.replace("BASE", "<freejoint name='root'/>").replace("QPOS", "0 0 1 1 0 0 0 ")
 
 
@@ -71,7 +72,7 @@ def urdf(tmp_path: Path) -> Path:
 # ---- the URDF ------------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("text", [FIXED, FLOATING])
+@pytest.mark.parametrize("text", [DRIVEN_THUMB, FLOATING.replace('"c_right" ctrlrange', '"a_thumb" ctrlrange')])
 def test_pinocchio_with_mimic_joints_finds_each_link_and_joint_once(text: str, tmp_path: Path) -> None:
     urdf = package(text, tmp_path)
     model = pin.buildModelFromUrdf(str(urdf), mimic=True)
@@ -83,12 +84,30 @@ def test_pinocchio_with_mimic_joints_finds_each_link_and_joint_once(text: str, t
     assert (model.nq, model.nv) == (2, 2)  # the shoulder, and the first finger of the tree, which both others follow
 
 
-def test_the_joint_that_comes_first_leads_and_the_coordinates_stay(urdf: Path) -> None:
+def mimics_of(urdf: Path) -> dict[str, dict[str, str]]:
     mimics = {joint.get("name"): joint.find("mimic") for joint in etree.parse(str(urdf)).findall("joint")}
-    found = {name: dict(mimic.attrib) for name, mimic in mimics.items() if mimic is not None}
-    assert found == {
+    return {name: dict(mimic.attrib) for name, mimic in mimics.items() if mimic is not None}
+
+
+def test_the_joint_that_comes_first_leads_and_the_coordinates_stay(tmp_path: Path) -> None:
+    assert mimics_of(package(DRIVEN_THUMB, tmp_path)) == {
         "b_left": {"joint": "a_thumb", "multiplier": "0.5", "offset": "-0.005"},
         "c_right": {"joint": "a_thumb", "multiplier": "0.5", "offset": "-0.005"},
+    }
+
+
+def test_a_driven_joint_leads_wherever_it_stands(tmp_path: Path) -> None:
+    """ros2_control refuses a command interface of a mimic joint."""
+    by_hand = {
+        "b_left": {"joint": "c_right", "multiplier": "1", "offset": "0"},
+        "a_thumb": {"joint": "c_right", "multiplier": "2", "offset": "0.01"},
+    }
+    assert mimics_of(package(FIXED, tmp_path)) == by_hand
+    (tmp_path / "left").mkdir()
+    driven_left = FIXED.replace('"c_right" ctrlrange', '"b_left" ctrlrange')
+    assert mimics_of(package(driven_left, tmp_path / "left")) == {
+        "a_thumb": {"joint": "b_left", "multiplier": "2", "offset": "0.01"},
+        "c_right": {"joint": "b_left", "multiplier": "1", "offset": "0"},
     }
 
 
@@ -289,8 +308,8 @@ def test_the_rules_find_what_is_wrong(urdf: Path) -> None:
 
 def test_the_srdf_has_the_group_the_pose_and_the_exclusions_with_their_reasons(urdf: Path) -> None:
     root = srdf_of(urdf)
-    assert [node.get("name") for node in root.find("group")] == ["shoulder"]
-    assert [node.get("name") for node in root.findall("passive_joint")] == ["a_thumb"]
+    assert [node.get("name") for node in root.find("group")] == ["shoulder", "c_right"]
+    assert [node.get("name") for node in root.findall("passive_joint")] == []
     assert {node.get("name"): node.get("value") for node in root.find("group_state[@name='home']")} == {
         "shoulder": "0.5",
         "b_left": "0.01",
