@@ -258,6 +258,12 @@ def _add_any(
     return add
 
 
+def _add_drives(builder: _Builder) -> None:
+    """One edge from actuators to what they drive."""
+    arcs = (*builder.arcs(1, ("actuator",), _LISTS), *builder.arcs(-1, ("joint", "tendon"), _LISTS))
+    builder.edge("drive", Edge(builder.draw(DRIVES), arcs))
+
+
 def _add_blocks(builder: _Builder) -> None:
     """Data and relations inside of others, with the edges that tell so, as blocks of text have them."""
     for _ in range(builder.draw(st.integers(0, 3))):
@@ -289,7 +295,7 @@ _ADDERS: tuple[tuple[Callable[[_Builder], None], Callable[[Knobs], bool]], ...] 
     (_add_subsets, lambda knobs: knobs.materials and knobs.meshes),
     (_add_any("loop", LOOPS, 0, ("body", "frame", "world"), _PLACED), lambda knobs: knobs.loops),
     (_add_any("tendon", TENDONS, 1, ("frame", "joint", "shape"), _LISTS), lambda knobs: knobs.tendons),
-    (_add_any("drive", DRIVES, -1, ("actuator", "joint", "tendon"), _LISTS), lambda knobs: knobs.actuators),
+    (_add_drives, lambda knobs: knobs.actuators),
     (_add_any("sense", st.just(parts.Sense()), 1, ("sensor", "body", "joint", "shape"), _LISTS), lambda knobs: knobs.sensors),
     (_add_any("stance", st.just(parts.Stance()), 0, ("pose", "joint"), _LISTS), lambda knobs: knobs.poses),
     (_add_any("contact", CONTACTS, 0, ("shape", "body"), _LISTS), lambda knobs: knobs.relations),
