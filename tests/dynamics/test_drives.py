@@ -30,9 +30,9 @@ def compare(found: Multibody, model: mujoco.MjModel, tolerance: float) -> None:
     rng = np.random.default_rng(5)
     data = mujoco.MjData(model)
     for _ in range(3):
-        data.qpos, data.qvel, data.ctrl = rng.normal(size=model.nq), rng.normal(size=model.nv), rng.normal(size=model.nu)
+        data.qpos, data.qvel, data.ctrl, data.act = (rng.normal(size=size) for size in (model.nq, model.nv, model.nu, model.na))
         mujoco.mj_forward(model, data)
-        ours = np.array(found.graph([*data.qpos, *data.qvel], data.ctrl), dtype=float)[model.nq :, 0]
+        ours = np.array(found.graph([*data.qpos, *data.qvel, *data.act], data.ctrl), dtype=float)[model.nq : model.nq + model.nv, 0]
         np.testing.assert_allclose(ours, data.qacc, atol=tolerance * np.abs(data.qacc).max())
 
 
