@@ -41,7 +41,7 @@ def other_names(image: Mechanism, source: Mechanism) -> dict[Id, Id]:
 class _Pairs:
     """Elements of the image without a namesake, and elements of the source without one, being matched.
 
-    Shapes without names whose namesakes are other shapes count as elements without one.
+    Shapes whose namesakes are other shapes count as elements without one.
     """
 
     def __init__(self, image: RobotGraph, source: RobotGraph) -> None:
@@ -146,14 +146,19 @@ class _Pairs:
 
 
 def _doubtful(image: RobotGraph, source: RobotGraph) -> Iterator[Id]:
-    """The shapes without names of their own that are another shape in the source."""
+    """The shapes that are another shape in the source, by their names; without names of their own, by what they are."""
     for key, edge in image.edges.items():
         data, other = edge.data, source.edges.get(key)
-        if other is None or not isinstance(data, Shape) or not isinstance(other.data, Shape) or data.name or other.data.name:
+        if other is None or not isinstance(data, Shape) or not isinstance(other.data, Shape) or not _may_be_others(data, other.data):
             continue
         is_same = data.geometry == other.data.geometry and edge.arcs == other.arcs
         if not is_same and essence_of(image, edge) != essence_of(source, other):
             yield key
+
+
+def _may_be_others(shape: Shape, other: Shape) -> bool:
+    """Whether two shapes of one id have no names of their own, or different ones."""
+    return shape.name != other.name if shape.name and other.name else not (shape.name or other.name)
 
 
 def reordered_shapes(edited: Mechanism, image: Mechanism) -> dict[Id, Id]:

@@ -214,3 +214,24 @@ def test_a_link_that_is_moved_behind_several_joints_keeps_its_actuators(tmp_path
     after, notes = brought_home(tmp_path, "r.sdf", moved, text=PENDULUM)
     assert [after.count(text) for text in (' pos="0 -0.2 0"', '<body name="ball" pos="0 0.2 0">', "<position")] == [2, 1, 2], after
     assert notes == []
+
+
+PEN = """<mujoco model="r">
+  <worldbody>
+    <body name="pen">
+      <joint name="j"/>
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      <geom name="stem" type="cylinder" size="0.01 0.1"/>
+      <geom name="top" type="cylinder" size="0.02 0.02" pos="0 0 0.1" contype="0" conaffinity="0"/>
+      <geom name="clip" type="box" size="0.01 0.01 0.03" pos="0.02 0 0" contype="0" conaffinity="0"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101")
+def test_one_of_several_visuals_with_names_is_moved(tmp_path: Path) -> None:
+    """Where the first shape is two in the converted file, the numbers of the others there are not those of the original."""
+    after, notes = brought_home(tmp_path, "r.sdf", ("<pose>0.02 0 0 0 0 0</pose>", "<pose>0.5 0 0 0 0 0</pose>"), text=PEN)
+    assert (after, notes) == (PEN.replace('pos="0.02 0 0"', 'pos="0.5 0 0"'), [])
