@@ -6,25 +6,21 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import materials
-from hymeko_x.formats.sdf.values import COLOUR, NUMBER, PAIR, TEXT, VECTOR, BadText, Field
-from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Material, Mesh, MeshShape, NoShape, Plane, Role, Sphere
+from hymeko_x.formats.sdf.values import COLOUR, NUMBER, PAIR, SOLIDS, TEXT, VECTOR, BadText, Field
+from hymeko_x.ir.parts import Material, Mesh, MeshShape, NoShape, Plane, Role
 from hymeko_x.ir.values import Pose, compose, inverse, quat_from_z, unit
 from hymeko_x.xml.printing import Tag
 from hymeko_x.xml.text import escaped
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from hymeko_x.backends.sdf.sheet import SdfSheet
     from hymeko_x.ir.mechanism import ShapeView
+    from hymeko_x.ir.parts import Geometry
 
 _MISSING = object()
 """No value equals it: what has no default is always written."""
-_BOX = Field("box/size", "size", VECTOR, _MISSING)
-_SPHERE = Field("sphere/radius", "radius", NUMBER, _MISSING)
-_CYLINDER = Field("cylinder/radius", "radius", NUMBER, _MISSING), Field("cylinder/length", "length", NUMBER, _MISSING)
-_CAPSULE = Field("capsule/radius", "radius", NUMBER, _MISSING), Field("capsule/length", "length", NUMBER, _MISSING)
-_ELLIPSOID = Field("ellipsoid/radii", "radii", VECTOR, _MISSING)
 _MU = Field("surface/friction/ode/mu", "friction", NUMBER)
 _DENSITY = Field("density", "density", NUMBER)
 _URI = Field("uri", "uri", TEXT)
@@ -63,26 +59,21 @@ def _pose_of(view: ShapeView, texts: Mapping[str, str]) -> tuple[Pose, str | Non
 
 
 def _add_geometry(tag: Tag, view: ShapeView, normal: str | None, texts: Mapping[str, str], sheet: SdfSheet) -> None:
-    values: list[tuple[Field, object]] = []
     match view.shape.geometry:
-        case Box(size):
-            values = [(_BOX, size)]
-        case Sphere(radius):
-            values = [(_SPHERE, radius)]
-        case Cylinder(radius, length):
-            values = [(_CYLINDER[0], radius), (_CYLINDER[1], length)]
-        case Capsule(radius, length):
-            values = [(_CAPSULE[0], radius), (_CAPSULE[1], length)]
-        case Ellipsoid(radii):
-            values = [(_ELLIPSOID, radii)]
         case Plane((x, y)):
             _add_plane(tag.add("plane"), (2.0 * x, 2.0 * y), normal, texts, sheet)
         case MeshShape():
             _add_mesh(tag.add("mesh"), view, texts, sheet)
-        case _:
-            return  # what SDF alone has is an extra
-    for field, value in values:
-        sheet.put(tag, field, value, texts, "geometry/")
+        case geometry:  # of what SDF alone has, nothing is written: it is an extra
+            for name, (kind, fields) in SOLIDS.items():
+                if isinstance(geometry, kind):
+                    _add_solid(tag.add(name), geometry, fields, texts, sheet)
+
+
+def _add_solid(tag: Tag, geometry: Geometry, fields: Iterable[Field], texts: Mapping[str, str], sheet: SdfSheet) -> None:
+    for field in fields:
+        known = field if sheet.from_sdf else field._replace(default=_MISSING)
+        sheet.put(tag, known, getattr(geometry, field.name), texts, f"geometry/{tag.name}/")
 
 
 def _add_plane(tag: Tag, size: tuple[float, float], normal: str | None, texts: Mapping[str, str], sheet: SdfSheet) -> None:

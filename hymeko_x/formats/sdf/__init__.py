@@ -128,5 +128,7 @@ SENSORS = frozenset(
 )
 """The types of sensors."""
 
+GEOMETRIES = ("box", "capsule", "cone", "cylinder", "ellipsoid", "plane", "sphere", "mesh", "polyline", "heightmap", "image", "empty")
+"""The elements of <geometry>; where there are several, libsdformat reads the first one in this order, whatever their order in the file."""
 OTHER_GEOMETRIES = ("cone", "polyline", "heightmap", "image", "empty")
 """Geometries that the IR cannot represent; they are kept as written."""

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Sphere
 from hymeko_x.ir.values import ZERO, Pose, number_text, numbers_text, pose, pose_from_rpy
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from hymeko_x.formats.sdf.notations import WrittenPose
+    from hymeko_x.ir.parts import Geometry
 
 UNBOUNDED = 1e16
 """From here on a limit means none, as in SDF up to 1.9."""
@@ -124,6 +127,18 @@ TENSOR = (
     Field("inertia/iyz", "yz", NUMBER, 0.0),
 )
 """In the order of the IR's tensors, with the values that libsdformat takes for missing ones."""
+
+_RADIUS, _LENGTH = Field("radius", "radius", NUMBER, 1.0), Field("length", "length", NUMBER, 1.0)
+SOLIDS: Mapping[str, tuple[type[Geometry], tuple[Field, ...]]] = MappingProxyType(
+    {
+        "box": (Box, (Field("size", "size", VECTOR, (1.0, 1.0, 1.0)),)),
+        "sphere": (Sphere, (_RADIUS,)),
+        "cylinder": (Cylinder, (_RADIUS, _LENGTH)),
+        "capsule": (Capsule, (_RADIUS._replace(default=0.5), _LENGTH)),
+        "ellipsoid": (Ellipsoid, (Field("radii", "radii", VECTOR, (1.0, 1.0, 1.0)),)),
+    }
+)
+"""The geometries that the IR has as well, by their elements, with the values that libsdformat takes for missing ones."""
 
 
 def is_same_text(written: str, text: str) -> bool:

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import sdf as words
-from hymeko_x.formats.sdf.values import NUMBER, PAIR, VECTOR, Field
+from hymeko_x.formats.sdf.values import NUMBER, PAIR, SOLIDS, VECTOR, Field
 from hymeko_x.frontends.sdf.materials import read_material
 from hymeko_x.ir.mechanism import shape_edge
-from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Mesh, MeshShape, NoShape, Plane, Role, Shape, Sphere
+from hymeko_x.ir.parts import Mesh, MeshShape, NoShape, Plane, Role, Shape
 from hymeko_x.ir.values import Pose, Z, compose, quat_from_z, unit
 from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from hymeko_x.frontends.sdf.builder import Model, SdfBuilder
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Geometry
@@ -58,11 +55,11 @@ def _read_geometry(shape: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry,
         builder.warn(codes.MISSING_PART, shape, f"{shape.subject}: <{shape.tag}> has no <geometry>; the shape has no geometry")
         return NoShape(), None, None
     node.taken = True
-    found = next((child for child in node.children if child.tag in _GEOMETRIES), None)
-    if found is None:
+    found = _geometry_of(node, shape, builder)
+    if found is None or found.tag in words.OTHER_GEOMETRIES:
         tags = ", ".join(f"<{child.tag}>" for child in node.unread_children())
-        if not any(child.tag in words.OTHER_GEOMETRIES for child in node.children):
-            message = f"{shape.subject}: <geometry> contains {tags or 'nothing'}, expected one of {', '.join(_GEOMETRIES)}"
+        if found is None:
+            message = f"{shape.subject}: <geometry> contains {tags or 'nothing'}, expected one of {', '.join((*SOLIDS, 'plane', 'mesh'))}"
             builder.warn(codes.MISSING_PART, shape, f"{message}; the shape has no geometry")
         elif not node.has("empty"):
             message = f"{shape.subject}: {tags} is kept as written, and has no shape in other formats"
@@ -73,7 +70,19 @@ def _read_geometry(shape: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry,
         return MeshShape(), _read_mesh(found, key, builder), None
     if found.tag == "plane":
         return _read_plane(found, key, builder)
-    return _READERS[found.tag](found, key, builder), None, None
+    kind, fields = SOLIDS[found.tag]
+    return kind(*[builder.value(found, field, key, f"geometry/{found.tag}/") for field in fields]), None, None
+
+
+def _geometry_of(node: Node, shape: Node, builder: SdfBuilder) -> Node | None:
+    """The child of a <geometry> that counts; None without one."""
+    found = [child for child in node.children if child.tag in words.GEOMETRIES]
+    if len(found) < 2:
+        return found[0] if found else None
+    first = min(found, key=lambda child: words.GEOMETRIES.index(child.tag))
+    message = f"{shape.subject}: <geometry> contains more than one shape; <{first.tag}> counts, and the others are kept as written"
+    builder.warn(codes.REPEATED, shape, message)
+    return first
 
 
 def _read_plane(node: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry, Id | None, Pose | None]:
@@ -88,34 +97,6 @@ def _read_plane(node: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry, Id 
     if normal != Z:
         builder.written.setdefault(key, {}).setdefault("geometry/plane/normal", VECTOR.write(normal))
     return Plane((size[0] / 2.0, size[1] / 2.0)), None, None if normal == Z else Pose(quat=turn)
-
-
-def _read_box(node: Node, key: Id, builder: SdfBuilder) -> Geometry:
-    return Box(builder.child_value(node, "size", VECTOR, (1.0, 1.0, 1.0), key, "geometry/box/size"))
-
-
-def _read_sphere(node: Node, key: Id, builder: SdfBuilder) -> Geometry:
-    return Sphere(builder.child_value(node, "radius", NUMBER, 1.0, key, "geometry/sphere/radius"))
-
-
-def _read_cylinder(node: Node, key: Id, builder: SdfBuilder) -> Geometry:
-    radius = builder.child_value(node, "radius", NUMBER, 1.0, key, "geometry/cylinder/radius")
-    return Cylinder(radius, builder.child_value(node, "length", NUMBER, 1.0, key, "geometry/cylinder/length"))
-
-
-def _read_capsule(node: Node, key: Id, builder: SdfBuilder) -> Geometry:
-    radius = builder.child_value(node, "radius", NUMBER, 0.5, key, "geometry/capsule/radius")
-    return Capsule(radius, builder.child_value(node, "length", NUMBER, 1.0, key, "geometry/capsule/length"))
-
-
-def _read_ellipsoid(node: Node, key: Id, builder: SdfBuilder) -> Geometry:
-    return Ellipsoid(builder.child_value(node, "radii", VECTOR, (1.0, 1.0, 1.0), key, "geometry/ellipsoid/radii"))
-
-
-_READERS: Mapping[str, Callable[[Node, Id, SdfBuilder], Geometry]] = MappingProxyType(
-    {"box": _read_box, "sphere": _read_sphere, "cylinder": _read_cylinder, "capsule": _read_capsule, "ellipsoid": _read_ellipsoid}
-)
-_GEOMETRIES = ("mesh", "plane", *_READERS)
 
 
 def _read_mesh(node: Node, key: Id, builder: SdfBuilder) -> Id:
