@@ -59,8 +59,8 @@ def solid(path: Path) -> Solid:
 
 @pytest.mark.full
 @pytest.mark.parametrize("name", PACKAGES)
-def test_real_meshes_are_the_same_solids(name: str, real_robots: RealRobots, tmp_path: Path) -> None:
-    folder = real_robots.package(next(package for package in catalog.load() if package.name == name))
+def test_real_meshes_are_the_same_solids(name: str, real_robot: RealRobots, tmp_path: Path) -> None:
+    folder = real_robot.package(next(package for package in catalog.load() if package.name == name))
     found = sorted(path for path in folder.rglob("*") if path.suffix.lower() in SUFFIXES and path.stat().st_size < MOST_BYTES)
     chosen = random.Random(name).sample(found, min(len(found), MESHES // len(PACKAGES) + 1))
     different = [str(path) for number, path in enumerate(chosen) if not comes_back(path, tmp_path / str(number))]
