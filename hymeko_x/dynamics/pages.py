@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from hymeko_x.dynamics.forms import PortHamiltonian, SecondOrder
     from hymeko_x.dynamics.linear import Pole, StateSpace
     from hymeko_x.dynamics.multibody import Multibody
+    from hymeko_x.dynamics.operating import OperatingPoint
     from hymeko_x.dynamics.system import Variable
 
 STYLES = ("text", "json", "latex", "markdown")
@@ -64,9 +65,20 @@ def page_of(dynamics: Lumped | Multibody, form: str, *, symbolic: bool = False, 
         "transfer-function": lambda: _transfer(space),
     }[form]()
     formula, variables, blocks, facts = made
-    held = {variable.name: value for variable, value in zip(dynamics.system.inputs, point.inputs, strict=True) if value}
-    place = {"at": _where(dynamics, point.positions), "held by": _pairs(held), "equilibrium": "yes" if point.is_equilibrium else "no"}
+    place = {
+        "at": _where(dynamics, point.positions),
+        "held by": _holding(dynamics, point),
+        "equilibrium": "yes" if point.is_equilibrium else "no",
+    }
     return Page(dynamics.tree.name, form, formula, variables, blocks, {**place, **_loops(dynamics, point.positions), **facts})
+
+
+def _holding(dynamics: Multibody, point: OperatingPoint) -> str:
+    """The inputs and the states of actuators that hold a robot."""
+    system, lagging = dynamics.system, len(point.activations)
+    variables = [*system.inputs, *system.states[len(system.states) - lagging :]]
+    values = [*point.inputs, *point.activations]
+    return _pairs({variable.name: value for variable, value in zip(variables, values, strict=True) if value})
 
 
 def _loops(dynamics: Multibody, positions: Sequence[float]) -> Mapping[str, str]:

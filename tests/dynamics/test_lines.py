@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from hymeko_x.dynamics.lines import Stretch, seats_of, stretches
 from hymeko_x.dynamics.multibody import Multibody
 from hymeko_x.dynamics.numbers import floats, symbols
 from hymeko_x.dynamics.operating import linearized
+from hymeko_x.dynamics.pages import page_of
 from hymeko_x.dynamics.recursion import Constants
 from hymeko_x.dynamics.signals import constant
 from hymeko_x.ir import parts
@@ -169,6 +171,9 @@ def test_a_filter_holds_a_robot_and_lags() -> None:
     assert point.is_equilibrium
     assert point.inputs == [point.activations[0], 0.0]
     assert sum(point.activations) == pytest.approx(-9.81 * (0.2 * np.cos(0.4) + 0.02 * np.sin(0.4)))
+    assert re.sub(r"-?\d+\.\d+", "F", page_of(found, "state-space", at="j=0.4").facts["held by"]) == (
+        "lag.control = F, lag.activation = F, sum.activation = F"
+    )
     poles = sorted(pole.value.real for pole in found.state_space("j=0.4").poles)
     assert min(abs(np.array(poles) + 2.0)) < 1e-9
     response = found.simulate(1.0, 0.25, {"lag": constant(1.0)})
