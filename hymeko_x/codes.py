@@ -280,6 +280,11 @@ ASSETS_APART = Code(
     "files beside the output have a folder of their own",
     "Meshes or textures of the same names and another content lie beside the output already. They belong to another robot and stay; the files of this output go to a folder that is named like it.",
 )
+NORMALS_TURNED = Code(
+    "HX206",
+    "normals of a mesh contradict its triangles",
+    "The normals in the file point to the other side than the order of the corners does. Programs shade by the one and cull by the other, so that such triangles look dark or are missing, and validators of USD refuse them. The file is written as it is: which of both is right is not known. A mesh program recomputes normals, or turns the triangles.",
+)
 PACKAGE_UNAVAILABLE = Code(
     "HX210",
     "a corpus package cannot be downloaded",

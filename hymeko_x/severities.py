@@ -172,6 +172,7 @@ NOTES: Mapping[Code, str] = {
     codes.ENVIRONMENT_CLOSED: "the file has a default for it",
     codes.ASSET_NOT_FOUND: "the reference is kept as it is in the source",
     codes.ASSET_CONVERTED: "the surface is the same in another type of file",
+    codes.NORMALS_TURNED: "the surface is as in the source; only its shading is concerned",
     codes.ASSETS_APART: "everything is written; only the folder is another one",
 }
 """Why there is nothing to worry about."""

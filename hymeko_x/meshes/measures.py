@@ -61,3 +61,15 @@ def thickened(part: Submesh, share: float) -> Submesh:
     if part.uv is not None and part.corners is not None:
         corners = np.concatenate([part.corners, part.corners[:, ::-1] + len(part.uv)])
     return Submesh(np.concatenate([part.points, below]), faces, uv, part.appearance, corners)
+
+
+def turned_triangles(part: Submesh) -> int:
+    """How many triangles have normals of their corners that point to the other side than the order of the corners does."""
+    if part.normals is None:
+        return 0
+    rows = part.faces if part.normal_corners is None else part.normal_corners
+    if rows.shape != part.faces.shape or (rows.size and not (rows.min() >= 0 and rows.max() < len(part.normals))):
+        return 0
+    given = part.normals[rows].sum(axis=1)
+    with np.errstate(invalid="ignore", over="ignore"):
+        return int((np.einsum("ij,ij->i", face_normals(part.points.astype(np.float64), part.faces.ravel()), given) < 0.0).sum())

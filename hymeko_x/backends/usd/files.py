@@ -28,8 +28,12 @@ if TYPE_CHECKING:
     from hymeko_x.formats import MeshReader
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.parts import Rgba
-    from hymeko_x.meshes.submesh import Appearance, ColouredMesh
+    from hymeko_x.meshes.submesh import Appearance, ColouredMesh, Submesh
     from hymeko_x.source import Files
+
+
+_FEW_TURNED = 0.1
+"""The share of triangles whose normals may point to the other side without a note: folds of thin parts often do."""
 
 
 class _Packing(Builder, kw_only=True):
@@ -72,12 +76,24 @@ def _pack(run: _Packing, key: Id, mesh: Mesh, painted: ColouredMesh, views: list
     seen = [view for view in views if view.shape.role is Role.VISUAL]
     is_shown = any(view.shape.role is not Role.COLLISION for view in views)
     run.vertices[key] = LoadedMesh(mesh.uri, mesh.scale, mesh.name, loaded=part if is_shown else Submesh(part.points, part.faces))
+    if is_shown:
+        _note_turned_normals(run, key, mesh, part)
     shown = [(appearance, _material(run, key, appearance), rows) for appearance, rows in appearances] if seen else []
     for view in seen:
         if len(shown) == 1 and len(shown[0][2]) == len(part.faces):
             _show_all(run, view, shown[0][1])
         elif view.id not in run.mechanism.subsets:
             _show_parts(run, view, shown)
+
+
+def _note_turned_normals(run: _Packing, key: Id, mesh: Mesh, part: Submesh) -> None:
+    """Report a file whose normals contradict more than a few of its triangles."""
+    from hymeko_x.meshes.measures import turned_triangles
+
+    turned = turned_triangles(part)
+    if turned > _FEW_TURNED * len(part.faces):
+        message = f"{key}: the normals in '{mesh.uri}' contradict {turned} of its {len(part.faces)} triangles; both are written as they are"
+        run.report.note(codes.NORMALS_TURNED, message, run.mechanism.origin(key), element=str(key))
 
 
 def _show_all(run: _Packing, view: ShapeView, material: Id | None) -> None:
