@@ -34,7 +34,7 @@ def stage(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @SOME
 @given(mechanism=mechanisms(), options=OPTIONS)
-@pytest.mark.unread("HX009", "HX065", "HX102", "HX201")
+@pytest.mark.unread("HX009", "HX065", "HX102", "HX104", "HX201")
 def test_every_legal_mechanism_is_a_stage_that_the_rules_have_nothing_against(mechanism: Mechanism, options: Options, stage: Path) -> None:
     own_words = replace(mechanism, extras={})  # the generated ones are not USD
     robot = robot_of_network(own_words, formats.by_name("usd"), Report())

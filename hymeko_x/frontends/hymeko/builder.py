@@ -111,12 +111,10 @@ class HymekoBuilder(Builder):
             found = self._imported(ref, item)
         if found is None:
             self._check_roots(ref, scope, kinds, item)
-            raise refuse(
-                codes.UNDEFINED_REFERENCE,
-                f"'{ref.dotted}' is not defined; expected {_listed(kinds or ('element',))}",
-                self.reader.origin(item),
-                hint=self.near(ref.path[-1], kinds),
-            )
+            other = self.find(ref, scope, ())
+            problem = "is not defined" if other is None else f"is {_listed((other.kind,))}"
+            message = f"'{ref.dotted}' {problem}; expected {_listed(kinds or ('element',))}"
+            raise refuse(codes.UNDEFINED_REFERENCE, message, self.reader.origin(item), hint=self.near(ref.path[-1], kinds))
         return found
 
     def _imported(self, ref: Ref, item: Item) -> Id | None:
@@ -192,6 +190,8 @@ class HymekoBuilder(Builder):
         expected = TARGETS[kind] if kinds is None else kinds
         if kind == "drive" and sign < 0:
             expected = tuple(other for other in expected if other != "actuator")
+        if kind == "sense" and sign < 0:
+            expected = ("sensor",)
         return Arc(self.target(item.ref, scope, expected, item), sign, self._weight(kind, item), str(item.role))
 
     def _weight(self, kind: str, item: ArcItem) -> Weight | None:
