@@ -19,6 +19,7 @@ from hymeko_x.source import file_stem
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from hymeko_x.ir.graph import Arc
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge, RobotGraph
 
 _PLACED = ("actuator", "sensor", "frame", "camera", "light")
@@ -151,9 +152,14 @@ def _doubtful(image: RobotGraph, source: RobotGraph) -> Iterator[Id]:
         data, other = edge.data, source.edges.get(key)
         if other is None or not isinstance(data, Shape) or not isinstance(other.data, Shape) or not _may_be_others(data, other.data):
             continue
-        is_same = data.geometry == other.data.geometry and edge.arcs == other.arcs
+        is_same = data.geometry == other.data.geometry and _placed(edge) == _placed(other)
         if not is_same and essence_of(image, edge) != essence_of(source, other):
             yield key
+
+
+def _placed(edge: RobotEdge) -> list[Arc[Id]]:
+    """The arcs of a shape to its body and its mesh; formats without names of materials give them others."""
+    return [arc for arc in edge.arcs if arc.target.kind != "material"]
 
 
 def _may_be_others(shape: Shape, other: Shape) -> bool:
