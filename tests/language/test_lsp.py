@@ -5,8 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import sys
-import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ from pygls.lsp.client import LanguageClient
 from hymeko_x.server import answers
 from hymeko_x.server.analysis import Analysis, analyse, unread
 from hymeko_x.server.workspace import Workspace
+from tests.pace import assert_at_most
 from tests.robot.robots import ARM, URDF_HAND
 
 ROOT = Path(__file__).parents[2]
@@ -321,7 +321,7 @@ def test_other_formats_get_the_diagnostics_of_check(tmp_path: Path) -> None:
 
 
 def test_a_question_after_a_keystroke_in_a_thousand_lines_is_answered_soon() -> None:
-    """In processor time, the best of five: 0.1 s is what an editor's user does not notice; a machine under load has twice that."""
+    """0.1 s is what an editor's user does not notice. In processor time and against sorting, since machines under load are slower."""
     bodies = [f"  body_{number} {{ mass 1 com [0 0 10cm] inertia [1 1 1] shape {{ box [0.1 0.1 0.1] }} }}" for number in range(500)]
     joints = [f"  @joint_{number} {{ [0 0 0.1] + body_{number} - body_{number + 1} axis=Y limit [-9 9] }}" for number in range(499)]
     text = "\n".join(["r : robot {", *bodies, *joints, "}"])
@@ -340,9 +340,9 @@ def test_a_question_after_a_keystroke_in_a_thousand_lines_is_answered_soon() -> 
         "renaming": lambda document: Workspace({"long.hymeko": document}).rename(document, types.Position(400, 4), "other"),
     }
     for name, ask in questions.items():
-        best = 9.0
-        for number in range(5):
-            start = time.process_time()
-            assert ask(unread(text.replace("mass 1 com", f"mass 1{number} com", 1), known))
-            best = min(best, time.process_time() - start)
-        assert best < 0.2, name
+        edits = iter(range(10, 20))
+
+        def answered(ask: Callable[[Analysis], object] = ask, edits: Iterator[int] = edits, name: str = name) -> None:
+            assert ask(unread(text.replace("mass 1 com", f"mass {next(edits)} com", 1), known)), name
+
+        assert_at_most(12.0, answered, lambda: sorted(map(str, range(100_000))))
