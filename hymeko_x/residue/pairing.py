@@ -19,8 +19,7 @@ from hymeko_x.source import file_stem
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from hymeko_x.ir.graph import Arc
-    from hymeko_x.ir.mechanism import Mechanism, RobotEdge, RobotGraph
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc, RobotEdge, RobotGraph
 
 _PLACED = ("actuator", "sensor", "frame", "camera", "light")
 """Kinds of elements that an edge places, which most often has their name."""
@@ -157,7 +156,7 @@ def _doubtful(image: RobotGraph, source: RobotGraph) -> Iterator[Id]:
             yield key
 
 
-def _placed(edge: RobotEdge) -> list[Arc[Id]]:
+def _placed(edge: RobotEdge) -> list[RobotArc]:
     """The arcs of a shape to its body and its mesh; formats without names of materials give them others."""
     return [arc for arc in edge.arcs if arc.target.kind != "material"]
 
