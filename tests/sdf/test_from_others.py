@@ -33,6 +33,8 @@ CROSSED = """<robot name="m"><link name="a"/><link name="b"/><joint name="j" typ
 PUSHED = (
     f"""<mujoco model="m"><worldbody><body name="a"><joint name="j" damping="-0.01" stiffness="-2"/>{BALL}</body></worldbody></mujoco>"""
 )
+BRIGHT = f"""<mujoco model="m"><asset><material name="hot" rgba="2 0 0 1"/></asset><worldbody><light diffuse="3 1 1"/>
+<body name="a">{BALL[:-2]} material="hot"/></body><body name="b">{BALL[:-2]} rgba="255 -1 0 1"/></body></worldbody></mujoco>"""
 TWICE = """<robot name="m"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <gazebo reference="a"><sensor name="eye" type="camera"><camera/></sensor><sensor name="eye" type="imu"/></gazebo></robot>"""
 ANCHOR = """<robot name="m"><link name="a"/><link name="a_anchor"/><joint name="j" type="fixed"><parent link="a"/><child link="a_anchor"/></joint></robot>"""
@@ -52,6 +54,7 @@ CASES = {
     "a closure that holds the end of a chain": ("m.xml", HELD_CHAIN, SAME),
     "limits that are crossed": ("m.urdf", CROSSED, SAME),
     "negative damping and stiffness": ("m.xml", PUSHED, LIMITED),
+    "colours brighter than 1": ("m.xml", BRIGHT, SAME),
     "two sensors of one name": ("m.urdf", TWICE, SAME),
     "a link whose name ends as ours do": ("m.urdf", ANCHOR, SAME),
     "a free joint below a body": ("m.hymeko", INNER_FREE, SAME),

@@ -18,7 +18,7 @@ from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.sensors import IMAGE, LEAST_FOV
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge
 from hymeko_x.ir.names import names_in_use
-from hymeko_x.ir.parts import Body, Camera, Dof, DofKind, Frame, Joint, Light, Mount, Shape
+from hymeko_x.ir.parts import Body, Camera, Dof, DofKind, Frame, Joint, Light, Material, Mount, Shape
 from hymeko_x.ir.values import ZERO, Pose, compose, quat_about, scaled
 from hymeko_x.rewrite.chains import chain_dofs
 from hymeko_x.rewrite.couplings import make_couplings_scalar
@@ -136,6 +136,26 @@ def widen_cameras(mechanism: Mechanism, context: Context) -> Mechanism:
     return mechanism.replace(vertices=vertices)
 
 
+def limit_colours(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """The components of colours lie between 0 and 1: libsdformat refuses the file for any other."""
+    edges: dict[Id, RobotEdge] = {}
+    for key, shape, _ in mechanism.edges(Shape):
+        if (rgba := _limited(shape.rgba)) != shape.rgba:
+            edges[key] = replace(mechanism.graph.edges[key], data=replace(shape, rgba=rgba))
+    vertices: dict[Id, Light | Material] = {}
+    for key, material in mechanism.vertices(Material):
+        if (rgba := _limited(material.rgba)) != material.rgba:
+            vertices[key] = replace(material, rgba=rgba)
+    for key, light in mechanism.vertices(Light):
+        if (diffuse := _limited(light.diffuse)) != light.diffuse:
+            vertices[key] = replace(light, diffuse=diffuse)
+    return mechanism.replace(vertices=vertices, edges=edges)
+
+
+def _limited(colour: tuple[float, ...] | None) -> tuple[float, ...] | None:
+    return None if colour is None else tuple([min(max(component, 0.0), 1.0) for component in colour])
+
+
 # ---- the world ---------------------------------------------------------------------------------------------------------------
 
 
@@ -177,6 +197,7 @@ RULES: tuple[Rule, ...] = (
     unless_from_sdf(close_loops_by_joints),
     make_couplings_scalar,
     unless_from_sdf(widen_cameras),
+    unless_from_sdf(limit_colours),
     put_world_geometry_on_a_link,
     unless_from_sdf(give_every_body_mass),
     prefer_own_colours,
