@@ -145,6 +145,16 @@ def test_a_urdf_that_urdfdom_refuses_is_not_comparable(written: Write) -> None:
     assert "shoulder" in verdict.reason
 
 
+@pytest.mark.unread("HX021")
+def test_an_inertia_without_products_is_compared_although_urdfdom_reads_none_of_it(written: Write, tmp_path: Path) -> None:
+    text = '<robot name="m"><link name="a"><inertial><mass value="1.2"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial></link></robot>'
+    source, heavier = written("urdf", text), written("urdf", text.replace('izz="0.1"', 'izz="0.15"'))
+    hx.convert(source, str(tmp_path / "a.sdf"))
+    verdict = hx.verify(source, str(tmp_path / "a.sdf"))
+    assert (verdict.verdict, [note for note in verdict.not_compared if "all six entries" in note] != []) == ("same", True)
+    assert [check.quantity for check in hx.verify(source, heavier).failed] == ["inertia tensor"]
+
+
 def test_a_scale_of_four_numbers_means_that_shapes_are_not_compared(written: Write) -> None:
     text = '<robot name="r"><link name="a"><visual><geometry><mesh filename="a.stl" scale="1 1 1 1"/></geometry></visual></link></robot>'
     path = written("urdf", text)

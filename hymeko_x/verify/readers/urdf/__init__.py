@@ -7,6 +7,7 @@ Source: pinocchio ``buildModelFromXML``; yourdfpy ``URDF.load``.
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,6 +48,9 @@ UNREPRESENTED = frozenset(
 )
 """urdfdom's <dynamics> and <limit> are those of one coordinate; a floating joint has six, and Pinocchio gives them none."""
 
+_INERTIA = re.compile(r"<inertia\s[^<>]*?(?=\s*/?>)")
+_ENTRIES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+
 _DUST = 1e-13
 """Of the whole: what is left of a mass or a tensor after subtracting its parts is zero below it, by the rounding of doubles."""
 
@@ -58,7 +62,7 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
 
 def read_text(data: bytes, path: Path, lookup: Lookup) -> KinematicModel:
     """The same for the text of the file at ``path``. Raises: Refusal HX302."""
-    text = data.decode("utf-8", "replace").replace("\x00", "")
+    text, completed = _with_whole_tensors(data.decode("utf-8", "replace").replace("\x00", ""))
     model = _build(text, str(path))
     second = load(text.encode(), path, lookup)
     if second.axisless:
@@ -72,7 +76,7 @@ def read_text(data: bytes, path: Path, lookup: Lookup) -> KinematicModel:
         features=FEATURES if second.shapes is not None else FEATURES - {Feature.VISUALS, Feature.COLLISIONS},
         unread=frozenset({Feature.VISUALS, Feature.COLLISIONS}),
         unrepresented=UNREPRESENTED,
-        notes=second.notes,
+        notes=(*second.notes, *completed),
     )
     couplings, notes = _couplings(text, found, second)
     found = replace(found, couplings=couplings, notes=(*found.notes, *notes))
@@ -80,6 +84,20 @@ def read_text(data: bytes, path: Path, lookup: Lookup) -> KinematicModel:
     if difference:
         raise refuse(codes.ENGINE_REFUSED, f"urdfdom and yourdfpy see different robots: {difference}", Origin(str(path)))
     return found
+
+
+def _with_whole_tensors(text: str) -> tuple[str, tuple[str, ...]]:
+    """The text with 0 for the entries that an ``<inertia>`` leaves out, as yourdfpy reads it, with a note where there are such.
+
+    urdfdom reads the mass of such a link and no entry of its tensor, and MuJoCo refuses the file.
+    """
+    whole = _INERTIA.sub(_with_all_entries, text)
+    note = "an <inertia> does not have all six entries, and urdfdom reads none of it: 0 is compared for those that are missing"
+    return whole, () if whole == text else (note,)
+
+
+def _with_all_entries(tag: re.Match[str]) -> str:
+    return tag[0] + "".join([f' {name}="0"' for name in _ENTRIES if not re.search(rf"\s{name}\s*=", tag[0])])
 
 
 def _build(text: str, file: str) -> Any:
