@@ -118,6 +118,7 @@ MJCF = Format(
     couplings="hymeko_x.formats.mjcf.couplings:couplings",
     poses="hymeko_x.formats.mjcf.keyframes:poses",
     joins="hymeko_x.formats.mjcf.keyframes:joined",
+    restates="hymeko_x.formats.mjcf.keyframes:restated",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
     numbers_constraints=True,
     mesh_reader="hymeko_x.meshes.tables:read_mesh",

@@ -90,6 +90,11 @@ class Format(Struct, frozen=True):
     joins: str | None = None
     """The function ``(whole, host, part, change) -> whole`` that gives a composed mechanism what depends on all of its elements."""
 
+    restates: str | None = None
+    """The function ``(changed, source, change, called) -> changed`` by which the named configurations that it keeps as texts fit a
+    changed mechanism; ``change(word, element, numbers)`` gives the present id of a joint or an actuator, and its numbers,
+    ``called(name)`` the present name of a configuration, None for one that goes."""
+
     fragments: str | None = None
     """The function ``mechanism -> texts``: the elements in which other formats hold what only it represents of its robots."""
     fragment_sensors: str | None = None

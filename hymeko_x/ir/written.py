@@ -25,6 +25,7 @@ from hymeko_x.ir.values import (
     quat_about,
     quat_from_rpy,
     quat_product,
+    rotate,
     scaled,
     unit,
     unit_quat,
@@ -67,6 +68,17 @@ def length_of(written: Written) -> float:
     """The distance in m of the two points of ``fromto``."""
     first, second = ends_of(written)
     return shortest(math.dist(first, second))
+
+
+def between_ends(pose: Pose, length: float) -> Pose:
+    """The pose with the notation ``fromto``, of something along its z axis of this length in m."""
+    half = scaled(rotate(pose.quat, Z), length / 2.0)
+    return Pose(pose.xyz, pose.quat, Written("fromto", (*add(pose.xyz, half), *add(pose.xyz, scaled(half, -1.0)))))
+
+
+def is_as_written(pose: Pose) -> bool:
+    """Whether the notation of a pose still means it: one that was made from another pose may have another place or rotation."""
+    return pose.written is None or pose_as_written(pose.xyz, pose.written) == pose
 
 
 def quat_as_written(written: Written) -> Quat:

@@ -10,25 +10,28 @@ from msgspec.structs import replace
 from hymeko_x import formats, pipeline
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge, numbers_weight
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism, joint_edge, numbers_weight
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import word
 from hymeko_x.ir.parts import Body, Dof, DofKind, Joint, World
 from hymeko_x.ir.values import IDENTITY, Pose
 from hymeko_x.joining import held, on_body, with_names
+from hymeko_x.rewrite.references import names_of
 from hymeko_x.robot.data import RobotData
 from hymeko_x.robot.draft import Draft
 from hymeko_x.robot.editing import dofs_of, place
 from hymeko_x.robot.errors import EditError, unknown_name
 from hymeko_x.robot.joining import merged, provenance_of, with_files
 from hymeko_x.robot.parting import ASSETS, below, part_of
+from hymeko_x.robot.states import with_ids, with_states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+    from hymeko_x.ir.mechanism import Extra, RobotArc, RobotEdge
     from hymeko_x.ir.values import Vec3
     from hymeko_x.robot.element import Element
+    from hymeko_x.robot.states import Change
 
 R = TypeVar("R", bound=RobotData)
 
@@ -141,23 +144,36 @@ def _with_states(whole: Mechanism, host: Mechanism, part: Mechanism, change: Cal
 def detach(robot: R, name: str) -> tuple[R, R]:
     """The robot without a part, and the part: what has this prefix, or else a body with all below it, which is then an open root.
 
-    What was attached with a prefix gets back its names and its world. Relations between the two are in neither.
+    The slash at the end of a prefix may be left out. What was attached with a prefix gets back its names and its world. Relations
+    between the two are in neither.
 
     Raises: KeyError when no body has this prefix, and none this name.
     """
     bodies = [key.name for key, _ in robot.mechanism.vertices(Body)]
-    if not name or (name not in bodies and not any(body.startswith(name) for body in bodies)):
+    named = [body for body in bodies if body.startswith(name)]
+    if not name or not named:
         raise unknown_name("body or prefix", name, bodies)
+    whole = robot.mechanism
+    rest = Draft(whole, lambda: robot.completed, is_locked=False)
     if name in bodies:
-        inside = part_of(robot.mechanism, below(robot.mechanism, Id("body", name)))
-        part = robot.changed(_only(robot, inside).finished(name))
-    else:
-        graph = robot.mechanism.graph
-        inside = {key for table in (graph.vertices, graph.edges) for key in table if key.name.startswith(name)}
-        part = robot.changed(with_names(_home(robot.mechanism, inside), lambda word: word.removeprefix(name)))
-    rest = Draft(robot.mechanism, lambda: robot.completed, is_locked=False)
-    rest.remove(key for key in inside if key.kind not in ASSETS or name not in bodies)
-    return robot.changed(rest.finished()), part
+        inside = part_of(whole, below(whole, Id("body", name)))
+        rest.remove(key for key in inside if key.kind not in ASSETS)
+        return robot.changed(rest.finished()), robot.changed(_only(robot, inside).finished(name))
+    name += "/" if all(body.startswith(f"{name}/") for body in named) else ""
+    inside = {key for table in (whole.graph.vertices, whole.graph.edges) for key in table if key.name.startswith(name)}
+    own = tuple([extra for extra in whole.extras.get(ROOT, ()) if _is_about(extra, name)])
+    part = with_names(_home(whole, inside, own), lambda word: word.removeprefix(name))
+    part = with_states(part, whole, _without_prefix(inside, name), lambda key: key.removeprefix(name) if key.startswith(name) else None)
+    rest.remove(inside)
+    left = rest.finished()
+    others = tuple([extra for extra in left.extras.get(ROOT, ()) if extra not in own])
+    left = replace(left, extras={**left.extras, ROOT: others}) if own else left
+    return robot.changed(with_states(left, left, with_ids({}), lambda key: None if key.startswith(name) else key)), robot.changed(part)
+
+
+def _without_prefix(inside: set[Id], prefix: str) -> Change:
+    """The change by which elements of a part lose its prefix, and others are gone."""
+    return lambda _word, key, numbers: (Id(key.kind, key.name.removeprefix(prefix)) if key in inside and key is not None else None, numbers)
 
 
 def subtree(robot: R, body: str) -> R:
@@ -185,8 +201,14 @@ def _only(robot: RobotData, inside: set[Id]) -> Draft:
     return draft
 
 
-def _home(whole: Mechanism, inside: set[Id]) -> Mechanism:
-    """The elements inside, on their own world again, with their own name."""
+def _is_about(extra: Extra, prefix: str) -> bool:
+    """Whether an extra of the whole names something, and only things with this prefix."""
+    named = [name for _, name in names_of(extra)]
+    return bool(named) and all(name.startswith(prefix) for name in named)
+
+
+def _home(whole: Mechanism, inside: set[Id], own: tuple[Extra, ...]) -> Mechanism:
+    """The elements inside, on their own world again, with their own name and their own extras of the whole."""
     name = whole.name
     edges: dict[Id, RobotEdge] = {}
     notations = {key: found for key, found in whole.notations.items() if key in inside}
@@ -206,6 +228,7 @@ def _home(whole: Mechanism, inside: set[Id]) -> Mechanism:
     vertices = {key: part for key, part in graph.vertices.items() if key in inside or (has_world and key == WORLD)}
     ordered = {key: edges[key] for key in graph.edges if key in edges}
     extras = {key: found for key, found in whole.extras.items() if key in vertices or key in ordered}
+    extras |= {ROOT: own} if own else {}
     layout = tuple(key for key in whole.layout if key in vertices or key in ordered)
     return replace(whole, name=name, graph=Hypergraph(vertices, ordered), extras=extras, notations=notations, layout=layout)
 

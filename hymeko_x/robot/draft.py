@@ -17,8 +17,9 @@ from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.names import names_in_use, with_dof_names
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Joint, Material, Mesh, Shape, Texture, World
-from hymeko_x.rewrite.references import with_references
+from hymeko_x.rewrite.references import with_references, without_references
 from hymeko_x.robot.errors import EditError
+from hymeko_x.robot.states import with_ids, with_states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -251,7 +252,7 @@ class Draft:
         graph = Hypergraph(_in_order(self.vertices, source.graph.vertices, now), _in_order(self.edges, source.graph.edges, now))
         changed = replace(source, name=source.name if name is None else name, graph=graph)
         if not (now or self._gone):
-            return changed
+            return with_states(changed, source, with_ids(now))
         changed = replace(
             changed,
             extras=self._kept(source.extras, now),
@@ -261,7 +262,18 @@ class Draft:
             stored=self._kept(source.stored, now),
             layout=tuple([now.get(key, key) for key in source.layout if key not in self._gone]),
         )
-        return with_references(changed, now)
+        named = with_references(without_references(changed, frozenset(self._gone_names())), now)
+        return with_states(named, source, with_ids(now))
+
+    def _gone_names(self) -> Iterator[Id]:
+        """What removed elements are called in their file: their ids, the names of shapes, and those of dofs."""
+        for key in self._gone:
+            yield key
+            edge = self.mechanism.graph.edges.get(key)
+            if edge is not None and isinstance(edge.data, Shape) and edge.data.name:
+                yield Id(SHAPE, edge.data.name)
+            if edge is not None and isinstance(edge.data, Joint):
+                yield from (Id(JOINT, dof.name) for dof in edge.data.dofs if dof.name)
 
     def _notations(self, now: Mapping[Id, Id]) -> dict[Id, Mapping[str, str]]:
         """The notations by present id; an element that got a name is no longer unnamed."""

@@ -87,7 +87,7 @@ class Named:
 
     @property
     def poses(self) -> Elements[el.PoseSetElement]:
-        """The named configurations (keyframes, group states)."""
+        """The named configurations that every format understands (group states); an MJCF file's keyframes come along as texts."""
         return Elements(self.draft, "pose", el.PoseSetElement)
 
     @property

@@ -105,7 +105,8 @@ class Robot(RobotData):
     def detach(self, name: str) -> tuple[Robot, Robot]:
         """The robot without a part, and the part: all with this prefix, or a body with all below it, which is then an open root.
 
-        What was attached with a prefix gets back its names and its world. Relations between the two are in neither.
+        The slash at the end of a prefix may be left out. What was attached with a prefix gets back its names and its world. Relations
+        between the two are in neither.
 
         Raises: KeyError when no body has this prefix, and none this name.
         """
@@ -141,7 +142,8 @@ class Robot(RobotData):
         """The mirror image on the plane y = 0: the same coordinates give mirrored poses. ``names`` are two words, such as left and
         right, each of which becomes the other one in every name.
 
-        Shapes that are no meshes are symmetric; meshes get a negative scale. Extras stay as they are.
+        Shapes that are no meshes are symmetric; meshes get a negative scale; the picture of a camera is mirrored left to right.
+        Extras stay as they are.
         """
         image = mirror(self.mechanism)
         return self.changed(image if names is None else with_names(image, swapped(names), is_part=False))

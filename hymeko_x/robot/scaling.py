@@ -12,11 +12,15 @@ from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import has_numbers
 from hymeko_x.ir.parts import Body, Coupling, Dof, DofKind, Frame, Joint, Limits, Loop, Mesh, Shape, Stance, Tendon
-from hymeko_x.ir.values import Pose
+from hymeko_x.ir.tendons import FIXED
+from hymeko_x.ir.values import Pose, Written
 from hymeko_x.robot.errors import EditError
+from hymeko_x.robot.states import with_states
 
 if TYPE_CHECKING:
+    from hymeko_x.ir.fields import DataValue
     from hymeko_x.ir.geometry import Geometry
+    from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.parts import EdgePart, Inertial, VertexPart
 
@@ -27,7 +31,17 @@ def scale(mechanism: Mechanism, s: float) -> Mechanism:
         raise EditError(f"robot '{mechanism.name}': a factor is a positive number, found {s!r}")
     vertices = {key: _vertex(part, s) for key, part in mechanism.graph.vertices.items()}
     edges = {key: _edge(edge, mechanism, s) for key, edge in mechanism.graph.edges.items()}
-    return replace(mechanism, graph=Hypergraph(vertices, edges))
+    big = replace(mechanism, graph=Hypergraph(vertices, edges))
+    return with_states(big, mechanism, lambda word, key, numbers: (key, _state(word, key, numbers, mechanism, s)))
+
+
+def _state(word: str, key: Id | None, numbers: tuple[float, ...], mechanism: Mechanism, s: float) -> tuple[float, ...]:
+    """The numbers of a joint, or of a mocap body, in a named configuration."""
+    if key is None:
+        return _times(numbers, s) if word == "mpos" else numbers
+    if key not in mechanism.joints:
+        return numbers
+    return tuple(_coordinates(mechanism.joints[key].joint, numbers, s, turns=3 if word == "qvel" else 4))
 
 
 def _times(numbers: tuple[float, ...], factor: float) -> tuple[float, ...]:
@@ -53,6 +67,11 @@ def _inertial(inertial: Inertial, s: float) -> Inertial:
 def _edge(edge: RobotEdge, mechanism: Mechanism, s: float) -> RobotEdge:
     data = _edge_part(edge.data, s)
     arcs = tuple([_arc(arc, edge.data, mechanism, s) for arc in edge.arcs])
+    if isinstance(data, Tendon):
+        lengths = [_length_of(arc, mechanism, s) for arc in arcs]
+        is_angle = data.kind == FIXED and 1.0 in lengths
+        data = _tendon(data, 1.0 if is_angle else s, s)
+        arcs = tuple([_over(arc, length) for arc, length in zip(arcs, lengths, strict=True)]) if is_angle else arcs
     if isinstance(data, Coupling) and arcs:
         arcs = (arcs[0], *(_leader(arc, arcs[0], mechanism, s) for arc in arcs[1:]))
     return Edge(data, arcs)
@@ -63,11 +82,30 @@ def _edge_part(part: EdgePart, s: float) -> EdgePart:
         return replace(part, dofs=tuple([_dof(dof, s) for dof in part.dofs]))
     if isinstance(part, Shape):
         return replace(part, geometry=_geometry(part.geometry, s), mass=None if part.mass is None else part.mass * s**3)
-    if isinstance(part, Tendon) and part.kind == "spatial":
-        coefficients = {"damping": part.damping * s**3, "stiffness": part.stiffness * s**3, "friction": part.friction * s**4}
-        width = None if part.width is None else part.width * s
-        return replace(part, limits=_limits(part.limits, s, s**4), width=width, **coefficients)
     return part
+
+
+def _tendon(part: Tendon, length: float, s: float) -> Tendon:
+    """``length`` is the factor on what it measures: paths and combinations of slides are lengths, other combinations are angles."""
+    moment = s**5 / length**2
+    rests = {"springlength": length}
+    return replace(
+        part,
+        limits=_limits(part.limits, length, moment * length),
+        damping=part.damping * moment,
+        stiffness=part.stiffness * moment,
+        friction=part.friction * moment * length,
+        armature=part.armature * moment,
+        width=None if part.width is None else part.width * s,
+        parameters=tuple([(name, _times_any(value, rests.get(name, 1.0))) for name, value in part.parameters]),
+    )
+
+
+def _times_any(value: DataValue, factor: float) -> DataValue:
+    """A parameter times a factor; one of MuJoCo's -1, which means that it is computed, stays."""
+    if isinstance(value, tuple):
+        return tuple([number if number == -1.0 else number * factor for number in value])
+    return value * factor if isinstance(value, float) and value != -1.0 else value
 
 
 def _geometry(geometry: Geometry, s: float) -> Geometry:
@@ -127,16 +165,24 @@ def _length(dof: Dof, s: float) -> float:
 
 def _arc(arc: RobotArc, part: EdgePart, mechanism: Mechanism, s: float) -> RobotArc:
     if isinstance(arc.weight, Pose):
-        return replace(arc, weight=replace(arc.weight, xyz=_times(arc.weight.xyz, s)))
+        return replace(arc, weight=_pose(arc.weight, s))
     if isinstance(part, Stance) and has_numbers(arc.weight) and arc.target in mechanism.joints:
         return replace(arc, weight=tuple(_coordinates(mechanism.joints[arc.target].joint, arc.weight, s)))
     return arc
 
 
-def _coordinates(joint: Joint, numbers: tuple[float, ...], s: float) -> list[float]:
+def _pose(pose: Pose, s: float) -> Pose:
+    written = pose.written
+    if written is not None and written.kind == "fromto":
+        written = Written("fromto", _times(written.numbers, s))
+    return Pose(_times(pose.xyz, s), pose.quat, written)  # type: ignore[arg-type]
+
+
+def _coordinates(joint: Joint, numbers: tuple[float, ...], s: float, *, turns: int = 4) -> list[float]:
+    """The coordinates of a joint, or its velocities; ``turns`` is how many numbers a rotation has."""
     factors: list[float] = []
     for dof in joint.dofs:
-        factors += [s] * 3 + [1.0] * 4 if dof.kind is DofKind.FREE else [1.0] * 4 if dof.kind is DofKind.BALL else [_length(dof, s)]
+        factors += [s] * 3 + [1.0] * turns if dof.kind is DofKind.FREE else [1.0] * turns if dof.kind is DofKind.BALL else [_length(dof, s)]
     return [number * factor for number, factor in zip(numbers, factors, strict=False)] + list(numbers[len(factors) :])
 
 
@@ -146,6 +192,11 @@ def _leader(arc: RobotArc, follower: RobotArc, mechanism: Mechanism, s: float) -
     if not has_numbers(arc.weight):
         return arc
     return replace(arc, weight=tuple([number * own / other**power for power, number in enumerate(arc.weight)]))
+
+
+def _over(arc: RobotArc, length: float) -> RobotArc:
+    """The arc of a combination that stays an angle: what its coefficients are multiplied by has grown by ``length``."""
+    return replace(arc, weight=tuple([number / length for number in arc.weight])) if has_numbers(arc.weight) else arc
 
 
 def _length_of(arc: RobotArc, mechanism: Mechanism, s: float) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from hymeko_x.ir.values import Pose, pose
+from hymeko_x.ir.written import is_as_written
 from hymeko_x.robot.errors import EditError
 
 
@@ -25,7 +26,7 @@ def plain_value(value: object) -> object:
 def as_pose(element: object, value: object) -> Pose:
     """A pose, or the one of a position. Raises: EditError for anything else."""
     if isinstance(value, Pose):
-        return pose(value.xyz, value.quat) if value.written is None else value
+        return value if value.written is not None and is_as_written(value) else pose(value.xyz, value.quat)
     plain = plain_value(value)
     if isinstance(plain, tuple) and len(plain) == 3 and all(isinstance(number, float) and math.isfinite(number) for number in plain):
         return Pose(plain)

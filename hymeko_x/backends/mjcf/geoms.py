@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf import CLASSES
 from hymeko_x.formats.mjcf.notations import GRID as NOTED_GRID
-from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, seen_from
+from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, between_its_ends, seen_from
 from hymeko_x.formats.mjcf.roles import role_attributes
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.parts import Body, NoShape, Plane
@@ -36,8 +36,9 @@ def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
         groups = (seen_from(PLACE, frame.pose), *groups[1:])
     grid = (sheet.mechanism.notation(key, NOTED_GRID) or GRID) if isinstance(shape.geometry, Plane) else None
     mesh = None if view.mesh is None else sheet.reference(Arc(view.mesh))
+    place = Place(shape.geometry, view.pose, grid)
     values: dict[str, object] = {
-        "place": Place(shape.geometry, view.pose, grid),
+        "place": between_its_ends(place) if "fromto" in base else place,
         "mesh": mesh,
         "material": None if view.material is None else sheet.reference(Arc(view.material)),
         "rgba": shape.rgba or (),
@@ -47,6 +48,8 @@ def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     }
     context = kept if fitted or mesh is None else {**kept, "mesh": mesh}
     found = sheet.attributes(values, groups, base, notations, context)
+    if isinstance(shape.geometry, NoShape) and "@type" in notations:
+        found["type"] = notations["@type"]  # a kind of geom that the IR does not have
     own = {**found, **kept}
     own |= role_attributes(shape.role, {**base, **own}) if sheet.from_mjcf else {}
     body.add(tag_of("geom", {"name": shape.name or None, "class": own_class, **own}, sheet.inside(key), view.body), frame)

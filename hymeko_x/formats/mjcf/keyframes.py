@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
@@ -15,12 +17,15 @@ from hymeko_x.ir.values import compose, inverse, numbers_text
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from hymeko_x.ir.mechanism import JointView
 
 _WIDTHS: Mapping[DofKind, tuple[int, int]] = {DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)}
 _BY_JOINT = ("qpos", "qvel")
+
+
+Change = Callable[[str, Id | None, tuple[float, ...]], tuple[Id | None, tuple[float, ...]]]
 
 
 class Key(Struct, frozen=True):
@@ -127,14 +132,21 @@ def _text(mechanism: Mechanism, key: Key) -> str:
     attributes = dict(key.attributes)
     for name in (*_BY_JOINT, "ctrl"):
         if any(of == name for of, _ in key.numbers):
-            values = [number for slot, rest in _slots(mechanism, name) for number in key.numbers.get((name, slot), rest)]
+            values = [number for slot, rest in _slots(mechanism, name) for number in _fitting(key.numbers.get((name, slot), rest), rest)]
             attributes[name] = numbers_text(tuple(values))
     node = parse_text("<key/>")
     node.attributes.update(attributes)
     return verbatim(node).removeprefix("<key").removesuffix("/>")
 
 
-_OF_ONE_ROBOT = ("act", "mpos", "mquat")
+def _fitting(numbers: tuple[float, ...], rest: tuple[float, ...]) -> tuple[float, ...]:
+    """The numbers of a joint, or those at rest where the joint has got another number of coordinates."""
+    return numbers if len(numbers) == len(rest) else rest
+
+
+_OF_MOCAP: Mapping[str, int] = MappingProxyType({"mpos": 3, "mquat": 4})
+"""The numbers of a key for each mocap body."""
+_OF_ONE_ROBOT = ("act", *_OF_MOCAP)
 """Numbers of a key whose order is not known of joints and actuators."""
 
 
@@ -143,6 +155,48 @@ def joined(whole: Mechanism, host: Mechanism, part: Mechanism, change: Callable[
     own = keys_of(host)
     others = [_changed(key, change) for key in keys_of(part)]
     return with_keys(whole, [_alone(key) for key in (*own, *others)])
+
+
+def restated(changed: Mechanism, source: Mechanism, change: Change, called: Callable[[str], str | None]) -> Mechanism:
+    """A changed robot with the keyframes of its source, whose numbers follow their joints and actuators.
+
+    ``change(word, element, numbers)`` gives the present id and the present numbers of a joint (``qpos``, ``qvel``) or an actuator
+    (``ctrl``); without an element it gives those of a mocap body (``mpos``, ``mquat``). ``called`` gives the present name of a key, or
+    None for one that goes. Keyframes to which nothing happened stay as they are written.
+    """
+    keys = keys_of(source)
+    if not keys:
+        return changed
+    new = [_restated(key, change, name) for key in keys if (name := called(key.attributes.get("name", ""))) is not None]
+    names = (*_BY_JOINT, "ctrl")
+    is_same = all(_widths(_slots(source, name), name, change) == _widths(_slots(changed, name)) for name in names)
+    if is_same and [_content(key) for key in new] == [_content(key) for key in keys]:
+        return changed
+    return with_keys(changed, new if is_same else [_alone(key) for key in new])
+
+
+def _content(key: Key) -> tuple[dict[str, str], list[tuple[float, ...]]]:
+    return key.attributes, [*key.numbers.values()]
+
+
+def _widths(slots: Iterator[tuple[Id, tuple[float, ...]]], name: str = "", change: Change | None = None) -> list[tuple[Id | None, int]]:
+    """How many numbers each joint or actuator has in order, under its present id."""
+    return [(slot if change is None else change(name, slot, rest)[0], len(rest)) for slot, rest in slots]
+
+
+def _restated(key: Key, change: Change, name: str) -> Key:
+    attributes = {**key.attributes, **({"name": name} if name else {})}
+    for word, width in _OF_MOCAP.items():
+        numbers = read_numbers(attributes.get(word, "")) or ()
+        if numbers:
+            groups = [change(word, None, tuple(numbers[start : start + width]))[1] for start in range(0, len(numbers), width)]
+            attributes[word] = numbers_text(tuple(number for group in groups for number in group))
+    numbers_now = {}
+    for (word, slot), numbers in key.numbers.items():
+        now, found = change(word, slot, numbers)
+        if now is not None:
+            numbers_now[word, now] = found
+    return Key(attributes, numbers_now)
 
 
 def _changed(key: Key, change: Callable[[str], str]) -> Key:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct
@@ -56,7 +57,7 @@ from hymeko_x.ir.values import (
     rotate,
     rotate_tensor,
 )
-from hymeko_x.ir.written import length_of, pose_as_written
+from hymeko_x.ir.written import between_ends, length_of, pose_as_written
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
@@ -138,7 +139,7 @@ def _write_place(value: Place, settings: Settings) -> dict[str, str]:
     pose = value.pose
     if pose.written is not None and pose.written.kind == "fromto":
         along = {"capsule": 1, "cylinder": 1, "box": 2, "ellipsoid": 2}.get(word or "")
-        if along is not None and size[along] == length_of(pose.written) / 2.0 and size[0] == size[along - 1]:
+        if along is not None and _is_between(pose, 2.0 * size[along]) and size[0] == size[along - 1]:
             size = size[:along]
         else:
             pose = Pose(pose.xyz, pose.quat)
@@ -165,6 +166,24 @@ def _word_and_size(value: Place) -> tuple[str | None, tuple[float, ...]]:
             return "mesh", ()
         case _:
             return None, ()
+
+
+def between_its_ends(place: Place) -> Place:
+    """The geom as two points give it, where its class gives it so, which no position can undo; as it is where points cannot give it."""
+    match place.geometry:
+        case Capsule(_, found) | Cylinder(_, found) | Box((_, _, found)):
+            length = found
+        case Ellipsoid((_, _, half)):
+            length = 2.0 * half
+        case _:
+            return place
+    return place if _is_between(place.pose, length) else replace(place, pose=between_ends(place.pose, length))
+
+
+def _is_between(pose: Pose, length: float) -> bool:
+    """Whether a pose is written as two points of this distance."""
+    written = pose.written
+    return written is not None and written.kind == "fromto" and math.isclose(length_of(written), length, rel_tol=1e-12)
 
 
 def _seen_place(attributes: Mapping[str, str], settings: Settings) -> Any:

@@ -1,0 +1,76 @@
+"""What is removed leaves nothing behind that names it, also not in what only MJCF can represent."""
+
+from __future__ import annotations
+
+import hymeko_x as hx
+from tests.robot.robots import ARM, HAND, arm, check_same_model
+
+COUPLED = HAND.replace(
+    "<tendon>", '<tendon><fixed name="both"><joint joint="left" coef="1"/><joint joint="right" coef="1"/></fixed>'
+).replace("<equality>", '<equality><tendon name="equal" tendon1="split" tendon2="both"/>')
+WATCHED = HAND.replace(
+    "<worldbody>",
+    '<worldbody><camera name="eye" pos="1 0 1" mode="targetbody" target="left"/>'
+    '<light name="lamp" pos="0 1 1" mode="targetbody" target="left"/>',
+)
+
+
+def coupled() -> hx.Robot:
+    return hx.loads(COUPLED, "mjcf")
+
+
+def test_a_removed_tendon_goes_with_the_equality_that_names_it() -> None:
+    assert coupled().to_mujoco().neq == 2
+    with coupled().edit() as e:
+        e.remove(e.tendons["both"])
+    assert e.robot.to_mujoco().neq == 1
+    with coupled().edit() as e:
+        e.remove(e.bodies["left"])
+    assert e.robot.to_mujoco().neq == 0
+
+
+def test_cameras_and_lights_that_follow_a_removed_body_stay_where_they_are() -> None:
+    with hx.loads(WATCHED, "mjcf").edit() as e:
+        e.remove(e.bodies["left"])
+    model = e.robot.to_mujoco()
+    assert (model.cam_mode.tolist(), model.light_mode.tolist()) == ([0], [0])
+    assert model.camera("eye").pos.tolist() == [1, 0, 1]
+
+
+def test_a_part_that_is_detached_takes_its_equalities_with_it() -> None:
+    rest, back = arm().attach(coupled(), at="flange", prefix="hand/").detach("hand/")
+    assert rest.to_mujoco().nkey == 1
+    check_same_model(rest.to_mujoco(), arm().to_mujoco())
+    assert back.to_mujoco().neq == 2
+
+
+def test_the_slash_of_a_prefix_may_be_left_out() -> None:
+    whole = arm().attach(coupled(), at="flange", prefix="hand/")
+    (rest, back), (short_rest, short_back) = whole.detach("hand/"), whole.detach("hand")
+    assert [*short_back.bodies] == ["palm", "left", "right"]
+    assert (short_rest, short_back) == (rest, back)
+
+
+KEYED = ARM.replace('ctrl="0.1 0"/>', 'ctrl="0.1 0.3"/>')
+
+
+def test_keyframes_fit_a_robot_with_more_and_with_fewer_joints() -> None:
+    with hx.loads(KEYED, "mjcf").edit() as e:
+        e.add_body("ball", on="world", at=(1, 2, 3), joint="free", mass=1, tensor=(1, 1, 1, 0, 0, 0))
+        e.add_body("tool", on="upper", joint="slide", mass=1, tensor=(1, 1, 1, 0, 0, 0))
+    model = e.robot.to_mujoco()
+    assert (model.key("home").qpos.tolist(), model.key("home").ctrl.tolist()) == ([0.1, 0.2, 0, 1, 2, 3, 1, 0, 0, 0], [0.1, 0.3])
+    with e.robot.edit() as e:
+        e.remove(e.joints["shoulder"])
+        e.add_joint("weld", parent="base", child="upper", at=(0, 0, 0.1))
+        e.remove(e.bodies["ball"])
+    model = e.robot.to_mujoco()
+    assert (model.key("home").qpos.tolist(), model.key("home").ctrl.tolist()) == ([0.2, 0], [0.3])
+
+
+def test_each_part_takes_its_own_keyframes_along() -> None:
+    hand = hx.loads(HAND.replace("</mujoco>", '<keyframe><key name="open" qpos="0.01 0.02" ctrl="3"/></keyframe></mujoco>'), "mjcf")
+    rest, back = arm().attach(hand, at="flange", prefix="hand/").detach("hand/")
+    assert [rest.to_mujoco().key(0).name, rest.to_mujoco().nkey] == ["home", 1]
+    assert [back.to_mujoco().key(0).name, back.to_mujoco().nkey] == ["open", 1]
+    assert back.to_mujoco().key("open").qpos.tolist() == [0.01, 0.02]
