@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from hymeko_x.compare.diff import diff
     from hymeko_x.diagnostics import Diagnostic, Refusal, Report, Severity
     from hymeko_x.dynamics import dynamics
-    from hymeko_x.ir.geometry import Box, Capsule, Cylinder, Sphere
+    from hymeko_x.ir.geometry import Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.values import Pose
     from hymeko_x.robot import EditError, Robot, compose
@@ -35,8 +35,10 @@ __all__ = [
     "Cylinder",
     "Diagnostic",
     "EditError",
+    "Ellipsoid",
     "Id",
     "Mechanism",
+    "Plane",
     "Pose",
     "Refusal",
     "Report",
@@ -67,7 +69,7 @@ _HOMES = {
     **dict.fromkeys(("EditError", "Robot", "compose"), "hymeko_x.robot"),
     **dict.fromkeys(("deg", "mm"), "hymeko_x.robot.units"),
     "Pose": "hymeko_x.ir.values",
-    **dict.fromkeys(("Box", "Capsule", "Cylinder", "Sphere"), "hymeko_x.ir.geometry"),
+    **dict.fromkeys(("Box", "Capsule", "Cylinder", "Ellipsoid", "Plane", "Sphere"), "hymeko_x.ir.geometry"),
 }
 
 

@@ -172,7 +172,7 @@ class Editing(Named, Generic[R]):
         surface = None if material is None else self.materials[material].id
         part = Shape(MeshShape() if isinstance(geometry, str) else geometry, role, name)
         self._draft.set_edge(key, shape_edge(part, body, pose, mesh, surface))
-        return self._with(el.ShapeElement(self._draft, key), rgba=rgba)
+        return self._with(el.ShapeElement(self._draft, key), geometry=part.geometry, rgba=rgba)
 
     def add_frame(self, name: str, *, on: str | Element, at: Pose | Vec3 = IDENTITY) -> el.FrameElement:
         """A frame (site)."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from hymeko_x.diagnostics import listed
-from hymeko_x.robot.errors import EditError, unknown_name
+from hymeko_x.robot.errors import EditError, hint_of, unknown_name
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin
@@ -22,6 +22,13 @@ class Element:
     def __init__(self, draft: Draft, key: Id) -> None:
         self.draft = draft
         self.id = key
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Assign a field. Raises: EditError for one that elements of this kind do not have."""
+        if name not in ("draft", "id") and not hasattr(type(self), name):
+            fields = [field for field in dir(type(self)) if not field.startswith("_")]
+            raise EditError(f"{self.id} has no {name!r}; {hint_of(name, fields, 'fields')}")
+        super().__setattr__(name, value)
 
     @property
     def name(self) -> str:

@@ -13,7 +13,17 @@ from hymeko_x.ir.parts import Dof, Geometry, Limits, Parameters, Rgba, Role
 from hymeko_x.ir.values import Pose, Tensor, Vec3
 from hymeko_x.robot.element import Element
 from hymeko_x.robot.errors import EditError
-from hymeko_x.robot.fields import DofField, InertialField, LimitsField, PartField, PoseField, between_zero_and_one, not_negative, ordered
+from hymeko_x.robot.fields import (
+    DofField,
+    InertialField,
+    LimitsField,
+    PartField,
+    PoseField,
+    between_zero_and_one,
+    not_negative,
+    ordered,
+    with_sizes,
+)
 from hymeko_x.robot.kinematics import pose_of
 
 if TYPE_CHECKING:
@@ -148,7 +158,7 @@ class JointElement(Element):
 class ShapeElement(Element):
     """A geometry on a body, to be seen, for contact, or for both."""
 
-    geometry = PartField[Geometry](None)
+    geometry = PartField[Geometry](with_sizes)
     """Box, Sphere, Cylinder, ... with sizes in m."""
     role = PartField[Role](None)
     """VISUAL, COLLISION or BOTH."""

@@ -24,12 +24,12 @@ class UnknownName(KeyError):
 
 def unknown_name(kind: str, name: object, known: Iterable[str]) -> UnknownName:
     """The error of a name that no element of this kind has."""
-    names = list(known)
-    near = get_close_matches(str(name), names, 3)
+    return UnknownName(f"there is no {kind} {name!r}; {hint_of(str(name), list(known), f'the robot has no {kind}')}")
+
+
+def hint_of(name: str, names: list[str], otherwise: str) -> str:
+    """The names that come near an unknown one, or a few of those that there are; ``otherwise`` where there are none."""
+    near = get_close_matches(name, names, 3)
     if near:
-        hint = f"did you mean {' or '.join(map(repr, near))}?"
-    elif names:
-        hint = f"there are {listed([*map(repr, names)], 5)}"
-    else:
-        hint = f"the robot has no {kind}"
-    return UnknownName(f"there is no {kind} {name!r}; {hint}")
+        return f"did you mean {' or '.join(map(repr, near))}?"
+    return f"there are {listed([*map(repr, names)], 5)}" if names else otherwise

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 from msgspec.structs import replace
 
 from hymeko_x.ir.mechanism import pose_weight
-from hymeko_x.ir.parts import Body, Dof, Inertial, Joint, Limits
+from hymeko_x.ir.parts import Body, Dof, Inertial, Joint, Limits, Plane
 from hymeko_x.ir.types import fits, hints_of, settled
 from hymeko_x.ir.values import IDENTITY, unit
 from hymeko_x.robot.errors import EditError
@@ -18,6 +18,7 @@ from hymeko_x.robot.values import as_pose, plain_value
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from hymeko_x.ir.parts import Geometry
     from hymeko_x.ir.values import Pose, Vec3
     from hymeko_x.robot.element import Element
 
@@ -152,7 +153,7 @@ def fitting(element: Element, owner: type, name: str, value: object) -> Any:
     plain = settled(owner, name, plain_value(value))
     hint = hints_of(owner)[name]
     if not fits(plain, hint) or not _is_finite(plain):
-        expected = str(getattr(hint, "__name__", hint)).replace("hymeko_x.ir.", "").replace("parts.", "")
+        expected = str(hint.__name__ if isinstance(hint, type) else hint).replace("hymeko_x.ir.", "").replace("parts.", "")
         raise EditError(f"{element.id}: {name} is of the type {expected}, found {value!r}")
     return unit_axis(element, plain) if name == "axis" else plain
 
@@ -191,6 +192,14 @@ def ordered(limits: Limits) -> str | None:
     if limits.lower is not None and limits.upper is not None and limits.lower > limits.upper:
         return "have a lower bound above the upper one"
     return None
+
+
+def with_sizes(geometry: Geometry) -> str | None:
+    """Geometries, whose sizes are more than 0; a plane without an end has the sizes 0."""
+    sizes = [getattr(geometry, field) for field in geometry.__struct_fields__]
+    numbers = [number for size in sizes for number in (size if isinstance(size, tuple) else (size,))]
+    is_open = isinstance(geometry, Plane)
+    return "has a size that is not more than 0" if any(number < 0 or (number == 0 and not is_open) for number in numbers) else None
 
 
 def between_zero_and_one(rgba: tuple[float, ...] | None) -> str | None:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 
+from msgspec.structs import replace
+
+from hymeko_x.ir.geometry import Geometry
 from hymeko_x.ir.values import Pose, pose
 from hymeko_x.ir.written import is_as_written
 from hymeko_x.robot.errors import EditError
@@ -17,6 +20,8 @@ def plain_value(value: object) -> object:
         return float(value)
     if isinstance(value, float):
         return float(value)
+    if isinstance(value, Geometry):
+        return replace(value, **{field: plain_value(getattr(value, field)) for field in value.__struct_fields__})
     if isinstance(value, list | tuple) or hasattr(value, "tolist"):
         items = value.tolist() if hasattr(value, "tolist") else value
         return tuple(map(plain_value, items)) if isinstance(items, list | tuple) else plain_value(items)

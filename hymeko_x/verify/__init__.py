@@ -93,7 +93,7 @@ def model_of(
     arguments: Mapping[str, str] | None = None,
     variants: Mapping[str, str] | None = None,
 ) -> KinematicModel:
-    """A robot as its reference engine sees it; a mechanism in memory as it is.
+    """A robot as its reference engine sees it; a mechanism in memory as it is, a robot in memory with the masses that its engine computes.
 
     Raises: Refusal, as :func:`verify`, and HX302 when the engine refuses the file.
     """
@@ -102,10 +102,10 @@ def model_of(
     if isinstance(robot, KinematicModel):
         return robot
     if not isinstance(robot, str | PathLike):
-        from hymeko_x.ir.holder import mechanism_of
+        from hymeko_x.ir.holder import completed_of
         from hymeko_x.verify.readers.hymeko import from_mechanism
 
-        return from_mechanism(mechanism_of(robot))
+        return from_mechanism(completed_of(robot))
     from hymeko_x.verify.readers import read
     from hymeko_x.verify.readers.lookup import Lookup
 

@@ -143,3 +143,30 @@ def test_meshes_of_several_folders_are_found(tmp_path) -> None:  # type: ignore[
     hx.dump(whole, tmp_path / "out/both.hymeko")
     again = hx.load(tmp_path / "out/both.hymeko")
     assert again.to_mujoco().nmesh == 2
+
+
+def test_meshes_of_equal_file_names_are_handed_over_in_memory(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    text = """<mujoco model="{0}"><asset><mesh name="part" file="part.obj"/></asset>
+      <worldbody><body name="x"><geom type="mesh" mesh="part"/></body></worldbody></mujoco>"""
+    for name, height in (("a", 1), ("b", 2)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "part.obj").write_text(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 {height}\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        (tmp_path / name / "robot.xml").write_text(text.format(name))
+    a, b = hx.load(tmp_path / "a/robot.xml"), hx.load(tmp_path / "b/robot.xml")
+    whole = a.attach(b, at="x", prefix="p/")
+    (tmp_path / "out").mkdir()
+    hx.dump(whole, tmp_path / "out/robot.xml")
+    for robot in (whole, hx.load(tmp_path / "out/robot.xml")):
+        assert robot.to_mujoco().body("p/x").mass == pytest.approx(b.to_mujoco().body("x").mass)
+    assert b.mass == pytest.approx(2 * a.mass)
+
+
+def test_soft_bodies_come_along_with_all_their_names() -> None:
+    soft = """<mujoco model="soft"><worldbody><flexcomp name="cloth" type="grid" dim="2" count="3 3 1" spacing=".1 .1 .1" mass="1"
+      radius=".01"><edge equality="true"/></flexcomp></worldbody></mujoco>"""
+    with arm().edit() as e:
+        e.add_frame("place", on="world")
+    spec, child = mujoco.MjSpec.from_string(ARM), mujoco.MjSpec.from_string(soft)
+    spec.worldbody.add_site(name="place")
+    spec.attach(child, site=spec.site("place"), prefix="s/")
+    check_same_model(e.robot.attach(hx.loads(soft, "mjcf"), at="place", prefix="s/").to_mujoco(), spec.compile())

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _SITES = ("site", "site1", "site2", "cranksite", "refsite", "sidesite", "slidersite")
 _KINDS: Mapping[str, str] = MappingProxyType(
     {
-        **dict.fromkeys(("body", "body1", "body2", "flexbody", "target"), "body"),
+        **dict.fromkeys(("body", "body1", "body2", "flexbody", "node", "target"), "body"),
         **dict.fromkeys(("joint", "joint1", "joint2", "jointinparent"), "joint"),
         **dict.fromkeys(("geom", "geom1", "geom2"), "shape"),
         **dict.fromkeys(_SITES, "frame"),
@@ -39,6 +39,8 @@ _OBJECTS: Mapping[str, str] = MappingProxyType(
     }
 )
 """The kinds of elements by the words of ``objtype`` and ``reftype``, which say what ``objname`` and ``refname`` name."""
+_OF_SEVERAL = ("flex", "flexcomp")
+"""The elements that name several bodies in one attribute, with blanks between them."""
 _OF_THE_WHOLE = ("compiler", "option", "size", "visual", "statistic", "keyframe", "default")
 """The sections that a robot has once: those of the host count. Keyframes are written anew."""
 
@@ -59,10 +61,18 @@ def renamed(extra: Extra, change: Callable[[str, str], str], *, is_of_whole: boo
         element = stack.pop()
         for name in _KINDS.keys() & element.attributes.keys():
             old = element.attributes[name]
-            element.attributes[name] = change(_kind_of(element, name), old)
+            element.attributes[name] = _changed(element, name, change)
             is_changed |= element.attributes[name] != old
         stack += element.children
     return replace(extra, text=verbatim(node)) if is_changed else extra
+
+
+def _changed(element: Node, attribute: str, change: Callable[[str, str], str]) -> str:
+    """The attribute with changed names; a flex names several bodies."""
+    old, kind = element.attributes[attribute], _kind_of(element, attribute)
+    if element.tag in _OF_SEVERAL and kind == "body":
+        return " ".join(change(kind, name) for name in old.split())
+    return change(kind, old)
 
 
 def _element(text: str) -> Node | None:

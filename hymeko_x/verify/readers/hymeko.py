@@ -21,6 +21,7 @@ from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.solids import evenly_spread
 from hymeko_x.rewrite.context import Options
 from hymeko_x.rewrite.differentials import combinations
+from hymeko_x.rewrite.efforts import actuator_efforts
 from hymeko_x.rewrite.transmissions import commanded
 from hymeko_x.source import Source
 from hymeko_x.verify import model as m
@@ -71,6 +72,7 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
 def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> KinematicModel:
     """The tree, its couplings and loops. A massless root link called ``world`` is the world itself, as for every other reader."""
     numbers = {WORLD_ID: WORLD}
+    efforts = actuator_efforts(mechanism)
     bodies = [world_body(shapes=tuple(_shapes(mechanism, WORLD_ID)))]
     for key in mechanism.depth_first():
         view = mechanism.parent_joint.get(key)
@@ -80,7 +82,7 @@ def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> Kinema
             bodies[WORLD] = world_body(shapes=(*bodies[WORLD].shapes, *_shapes(mechanism, key)))
             continue
         numbers[key] = len(bodies)
-        bodies.append(_body(mechanism, key, view, inertial, numbers))
+        bodies.append(_body(mechanism, key, view, inertial, numbers, efforts))
     bare = KinematicModel(mechanism.name, format, "hymeko-x", tuple(bodies))
     dofs, frames = _dof_numbers(mechanism, bare, numbers), _frames(mechanism, numbers)
     return KinematicModel(
@@ -110,13 +112,20 @@ def _records(mechanism: Mechanism, keys: Iterable[Id]) -> Iterator[m.Record]:
         yield m.Record(None if mechanism.notation(key, UNNAMED) is not None else key.name, (), ())
 
 
-def _body(mechanism: Mechanism, key: Id, view: JointView | None, inertial: parts.Inertial | None, numbers: Mapping[Id, int]) -> Body:
+def _body(
+    mechanism: Mechanism,
+    key: Id,
+    view: JointView | None,
+    inertial: parts.Inertial | None,
+    numbers: Mapping[Id, int],
+    efforts: Mapping[tuple[Id, int], float],
+) -> Body:
     inertial = inertial or parts.Inertial(0.0)
     xx, yy, zz, xy, xz, yz = inertial.tensor or (0.0,) * 6
     return Body(
         key.name,
         WORLD if view is None else numbers[view.parent],
-        m.Joint(open=True) if view is None else _joint(view),
+        m.Joint(open=True) if view is None else _joint(view, efforts),
         inertial.mass or 0.0,
         np.array(_centre(inertial, mechanism.shapes.get(key, ()))),
         np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]),
@@ -140,12 +149,13 @@ def _matrix(value: Pose) -> Array:
 # ---- joints ----------------------------------------------------------------------------------------------------------
 
 
-def _joint(view: JointView) -> m.Joint:
-    dofs = tuple(_dof(dof, view) for dof in view.joint.dofs)
+def _joint(view: JointView, efforts: Mapping[tuple[Id, int], float]) -> m.Joint:
+    dofs = tuple(_dof(dof, view, efforts.get((view.id, number), INF)) for number, dof in enumerate(view.joint.dofs))
     return m.between_frames(view.id.name, _matrix(view.parent_pose), dofs, _matrix(view.child_pose))
 
 
-def _dof(dof: parts.Dof, view: JointView) -> Dof:
+def _dof(dof: parts.Dof, view: JointView, driven: float) -> Dof:
+    """The dof; ``driven`` is what its actuators can exert on it."""
     limits = dof.limits
     effort = _or(limits.effort, INF)
     return Dof(
@@ -158,6 +168,7 @@ def _dof(dof: parts.Dof, view: JointView) -> Dof:
         upper=_or(limits.upper, INF),
         velocity=_or(limits.velocity, INF),
         effort=(-effort, effort),
+        driven=driven,
         damping=dof.damping,
         friction=dof.friction,
         armature=dof.armature,
