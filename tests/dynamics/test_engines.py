@@ -140,5 +140,5 @@ def test_an_mjcf_moves_as_in_mujoco(robot: Path) -> None:
     theirs = turn.T @ whole @ turn
     q = relative(found, data.qpos)
     close(found.mass_matrix(q), theirs, 1e-10)
-    close(found.bias(q, v), turn.T @ data.qfrc_bias + theirs @ drift, 1e-9)
+    close(found.bias(q, v), turn.T @ data.qfrc_bias + theirs @ drift, 1e-10)
     close(found.forward(q, v, np.zeros(model.nv)), turn.T @ data.qacc - drift, 1e-14 * max(1e5, np.linalg.cond(theirs)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from hymeko_x.dynamics.writers.program import description, graph_of, program_of
@@ -61,12 +62,32 @@ def write_casadi(system: System) -> str:
     return "\n".join(lines) + "\n"
 
 
+_LONG = 500
+"""Operations beyond which formulas are written step by step: those of an arm of three joints without steps take seven megabytes."""
+
+
+_STEPS = """# The formulas are long: rates and outputs are in the symbols of steps, as from sympy.cse, for
+# lambdify((x, u, p), rates, cse=lambda found: (steps, found)) and the like.
+steps = []
+
+
+def step(name, value):
+    steps.append((symbols(name, real=True), value))
+    return steps[-1][0]
+
+"""
+
+
 def write_sympy(system: System) -> str:
-    """A Python module with the rates and outputs as sympy matrices in the symbols x0, u0, p0, ...; numbers are exact fractions."""
+    """A Python module with the rates and outputs as sympy matrices in the symbols x0, u0, p0, ...; numbers are exact fractions.
+
+    Long formulas are written step by step, as ``sympy.cse`` gives them.
+    """
     import sympy
 
     from hymeko_x.dynamics.numbers import symbols
 
+    steps = program_of(system, "{}{}".format, texts=_SYMBOLIC, constant=_fraction)
     parts = (system.states, system.inputs, system.parameters)
     groups = [sympy.symbols(f"{letter}:{len(part)}", real=True) if part else () for letter, part in zip("xup", parts, strict=True)]
     used = "Abs, Matrix, S, acos, asin, atan, atan2, cos, exp, log, sign, sin, sqrt, symbols, tan, tanh"
@@ -74,11 +95,25 @@ def write_sympy(system: System) -> str:
     for letter, group in zip("xup", groups, strict=True):
         names = ", ".join(map(str, group))
         lines.append(f'{letter} = ({names},) = symbols("{letter}:{len(group)}", real=True)' if group else f"{letter} = ()")
+    if len(steps.assignments) > _LONG:
+        lines += _STEPS.splitlines() + [f'{target} = step("{target}", {text})' for target, text in steps.assignments]
+        lines += [f"rates = Matrix([{', '.join(steps.rates)}])", f"outputs = Matrix([{', '.join(steps.outputs)}])"]
+        return "\n".join(lines) + "\n"
     for name, equations in (("rates", system.rates), ("outputs", system.measured)):
         x, u, p = groups
         texts = [sympy.sstr(sympy.sympify(value), sympy_integers=True) for value in equations(x, u, p, symbols())]
         lines.append(f"{name} = Matrix([{', '.join(texts)}])")
     return "\n".join(lines) + "\n"
+
+
+_SYMBOLIC = {**_POWERS, "FABS": "Abs({0})"}
+"""What sympy writes in another way than :mod:`hymeko_x.dynamics.writers.program`."""
+
+
+def _fraction(number: float) -> str:
+    """The fraction that a decimal stands for, as sympy reads it."""
+    found = Fraction(repr(number))
+    return f"S({found.numerator})" if found.denominator == 1 else f"(S({found.numerator})/{found.denominator})"
 
 
 def write_c(system: System) -> str:

@@ -54,8 +54,13 @@ _TEXTS: Mapping[str, str] = MappingProxyType(
 """Each operation of casadi as text in Modelica and Octave; other languages replace what they write otherwise."""
 
 
-def program_of(system: System, names: Callable[[str, int], str], *, texts: Mapping[str, str] | None = None) -> Program:
-    """The program of a system. ``names`` gives the text of the k-th of x, u or p; ``texts`` replaces operations."""
+def program_of(
+    system: System, names: Callable[[str, int], str], *, texts: Mapping[str, str] | None = None, constant: Callable[[float], str] = repr
+) -> Program:
+    """The program of a system.
+
+    ``names`` gives the text of the k-th of x, u or p, ``constant`` that of a number; ``texts`` replaces operations.
+    """
     import casadi
 
     graph = graph_of(system)
@@ -67,7 +72,7 @@ def program_of(system: System, names: Callable[[str, int], str], *, texts: Mappi
         operation, inputs, outputs = graph.instruction_id(k), graph.instruction_input(k), graph.instruction_output(k)
         if operation == casadi.OP_CONST:
             value = graph.instruction_constant(k)
-            current[outputs[0]] = repr(value) if value >= 0 else f"({value!r})"
+            current[outputs[0]] = constant(value) if value >= 0 else f"({constant(value)})"
         elif operation == casadi.OP_INPUT:
             current[outputs[0]] = names("xup"[inputs[0]], inputs[1])
         elif operation == casadi.OP_OUTPUT:
@@ -77,7 +82,7 @@ def program_of(system: System, names: Callable[[str, int], str], *, texts: Mappi
             assignments.append((target, known[operation].format(*[current[place] for place in inputs])))
             current[outputs[0]] = target
     rates, measured = (
-        tuple(found.get(k, "0.0") for k in range(count))
+        tuple(found.get(k, constant(0.0)) for k in range(count))
         for found, count in zip(results, (len(system.states), len(system.outputs)), strict=True)
     )
     return Program(tuple(assignments), rates, measured)
