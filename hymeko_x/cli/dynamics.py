@@ -6,11 +6,12 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hymeko_x import codes
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.report import show_diagnostics
-from hymeko_x.diagnostics import Report
+from hymeko_x.diagnostics import Report, refuse
 from hymeko_x.disk import check_outputs, write_files
 
 if TYPE_CHECKING:
@@ -90,9 +91,14 @@ def _mechanism_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _dynamics(chosen: argparse.Namespace, report: Report) -> Lumped | Multibody:
     import hymeko_x as hx
+    from hymeko_x.dynamics.lumped import Lumped
 
     given = read_input(chosen.input, chosen, report)
-    return hx.dynamics(given.mechanism, base=chosen.base, inputs=chosen.inputs, files=given.source.files, report=report)
+    found = hx.dynamics(given.mechanism, base=chosen.base, inputs=chosen.inputs, files=given.source.files, report=report)
+    if chosen.at and isinstance(found, Lumped):
+        name = given.mechanism.name
+        raise refuse(codes.BAD_SIGNAL, f"{name} is a network, whose equations count from rest; --at is for mechanisms with joints")
+    return found
 
 
 # ---- simulate ------------------------------------------------------------------------------------------------------------

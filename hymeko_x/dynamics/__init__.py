@@ -42,15 +42,19 @@ def dynamics(
 
     Raises: Refusal (HX4xx) that names the element for which there are none.
     """
+    from hymeko_x.diagnostics import Report
     from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.multibody import multibody_of
     from hymeko_x.ir.holder import mechanism_of
     from hymeko_x.networks.assembly import has_network, network_of
+    from hymeko_x.rewrite.context import Context
+    from hymeko_x.rewrite.poses import name_poses
 
     mechanism = mechanism_of(robot)
     if has_network(mechanism):
         return Lumped(network_of(mechanism))
-    found = multibody_of(_with_inertias(mechanism, files, report), base=base, gravity=gravity, actuated=inputs == "actuators")
+    whole = name_poses(_with_inertias(mechanism, files, report), Context(Report()))
+    found = multibody_of(whole, base=base, gravity=gravity, actuated=inputs == "actuators")
     if report is not None:
         _report_left_out(found, report)
     return found

@@ -43,7 +43,8 @@ if TYPE_CHECKING:
 _ITERATIONS = 50
 _EXACT = 1e-12
 """Newton's last step, relative to the state."""
-_TINY = 1e-300
+_TINY = 1e-12
+"""In the square of a change: what the discrete gradient adds to the gradient is rounding where a robot hardly moves."""
 _RANK = 1e-11
 
 

@@ -45,7 +45,7 @@ class Multibody(Trees, frozen=True, dict=True):
         """
         if words == "found":
             return operating_point(self, {}, search=True)
-        return operating_point(self, named_positions(self.mechanism, words) if words else {}, keep="=" in words)
+        return operating_point(self, named_positions(self, words) if words else {}, keep="=" in words)
 
     def state_space(self, at: str = "") -> StateSpace:
         """A, B, C, D at an operating point (:meth:`at`), from exact derivatives."""
@@ -139,7 +139,7 @@ class Multibody(Trees, frozen=True, dict=True):
         """The independent positions at an operating point (:meth:`at`)."""
         if at == "found":
             return self.at(at).positions
-        return start_of(self, named_positions(self.mechanism, at) if at else {}, keep="=" in at)
+        return start_of(self, named_positions(self, at) if at else {}, keep="=" in at)
 
 
 def multibody_of(

@@ -26,11 +26,12 @@ if TYPE_CHECKING:
 
     from hymeko_x.dynamics.tree import Link
     from hymeko_x.dynamics.trees import Trees
-    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.mechanism import Id, Mechanism
 
     Floats = NDArray[np.floating[Any]]
 
 _ELSEWHERE = "--at joint=value,... linearises at a configuration that inputs hold"
+_WIDTHS = {DofKind.BALL: 4, DofKind.FREE: 7}
 _HELD = 1e-9
 """In m/s^2 or rad/s^2: accelerations up to which a point is an equilibrium."""
 
@@ -52,27 +53,42 @@ class OperatingPoint(NamedTuple):
         return max(map(abs, self.rates), default=0.0) <= _HELD
 
 
-def named_positions(mechanism: Mechanism, words: str) -> dict[str, float]:
+def named_positions(found: Trees, words: str) -> dict[str, float]:
     """The positions that ``--at`` gives by the names of dofs: a named configuration of the file, or ``joint=value,joint=value``.
+
+    Of a configuration they are those of the independent dofs with one coordinate: followers follow, balls and free bodies are at rest.
 
     Raises: Refusal (HX407) for words that are neither.
     """
-    found: dict[str, float] = {}
-    for _, _, arcs in mechanism.edges(parts.Stance):
-        if not any(arc.target.kind == "pose" and arc.target.name == words for arc in arcs):
-            continue
-        for arc in arcs:
-            dof = dof_at(mechanism.graph.edges, arc)
-            if dof is not None and len(numbers_weight(arc)) == 1:
-                found[dof[1].name or arc.target.name] = numbers_weight(arc)[0]
-    if found:
-        return found
+    mechanism = found.mechanism
+    configurations = {key.name: key for key, _ in mechanism.vertices(parts.PoseSet)}
+    if words in configurations:
+        numbers = _configuration(mechanism, configurations[words])
+        links = [link for link in independent(found.tree, found.followers) if link.coordinates == 1]
+        return {link.name: numbers[link.joint, link.number] for link in links if (link.joint, link.number) in numbers}
     try:
         return {name: float(value) for name, value in (pair.split("=") for pair in words.split(","))}
     except ValueError as error:
-        known = ", ".join(key.name for key, _ in mechanism.vertices(parts.PoseSet)) or "none"
-        hint = f"named configurations of the file: {known}; or joint=0.5,other=1 in rad and m"
+        hint = f"named configurations of the file: {', '.join(configurations) or 'none'}; or joint=0.5,other=1 in rad and m"
         raise refuse(codes.BAD_SIGNAL, f"'{words}' is no configuration", hint=hint) from error
+
+
+def _configuration(mechanism: Mechanism, pose: Id) -> dict[tuple[Id, int], float]:
+    """The coordinates of a named configuration by joint and number of the dof, of dofs with one."""
+    found: dict[tuple[Id, int], float] = {}
+    for _, _, arcs in mechanism.edges(parts.Stance):
+        if not any(arc.target == pose for arc in arcs):
+            continue
+        for arc in arcs:
+            joint, numbers = mechanism.joints.get(arc.target), list(numbers_weight(arc))
+            named = dof_at(mechanism.graph.edges, arc) if arc.role else None
+            if named is not None and len(numbers) == 1:
+                found[arc.target, named[0]] = numbers.pop()
+            for number, dof in enumerate(joint.joint.dofs if joint is not None else ()):
+                own = [numbers.pop(0) for _ in range(min(_WIDTHS.get(dof.kind, 1), len(numbers)))]
+                if len(own) == 1:
+                    found[arc.target, number] = own[0]
+    return found
 
 
 def operating_point(found: Trees, positions: Mapping[str, float], *, search: bool = False, keep: bool = True) -> OperatingPoint:
