@@ -10,6 +10,8 @@ from msgspec.structs import replace
 import hymeko_x as hx
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.rewrite import legalize
+from tests.pace import assert_at_most
 
 ROBOT = """<robot name="r"{}><link name="b"><inertial><mass value="1"/>
 <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>{}</robot>"""
@@ -56,3 +58,11 @@ def test_the_noise_of_an_imu_is_that_of_each_axis(tmp_path: Path) -> None:
     assert "<angular_velocity><x>" in text
     assert "<linear_acceleration><x>" in text
     assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.sdf").verdict == "same"
+
+
+@pytest.mark.parametrize(
+    "fragment", ['<gazebo><plugin name="{0}" filename="p.so"/></gazebo>', IMU.replace('name="imu"', 'name="{0}"')], ids=["model", "link"]
+)
+def test_ten_times_as_many_fragments_take_about_ten_times_as_long(fragment: str) -> None:
+    few, many = (hx.loads(ROBOT.format("", "".join(fragment.format(n) for n in range(count))), "urdf").mechanism for count in (300, 3000))
+    assert_at_most(2.0, lambda: legalize(many, "sdf", Report()), lambda: legalize(few, "sdf", Report()), 10)

@@ -25,7 +25,7 @@ from hymeko_x.xml.printing import markup
 from hymeko_x.xml.text import escaped, unescaped
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge
     from hymeko_x.rewrite.context import Context
@@ -48,6 +48,8 @@ def obey_gazebo_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
         return mechanism
     declared = {extra.path.removeprefix(_XMLNS): extra.text for extra in mechanism.extras[ROOT] if extra.path.startswith(_XMLNS)}
     added: dict[Id, list[Extra]] = {}
+    held = {(key, extra) for key, extras in mechanism.extras.items() for extra in extras if extra.format == words.FORMAT}
+    names: dict[Id, set[str]] = {}
     edges: dict[Id, RobotEdge] = {}
     for text in texts:
         try:
@@ -56,8 +58,9 @@ def obey_gazebo_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
             continue
         for key, found in _extras_of(node, mechanism, edges):
             extra = _with_namespaces(found, declared, context)
-            if extra is not None and extra not in (*mechanism.extras.get(key, ()), *added.get(key, ())):
-                added.setdefault(key, []).append(_named_once(extra, key, added.get(key, ()), context))
+            if extra is not None and (key, extra) not in held:
+                held.add((key, extra))
+                added.setdefault(key, []).append(_named_once(extra, key, names.setdefault(key, set()), context))
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), *found) for key, found in added.items()}}
     return replace(mechanism, graph=mechanism.graph.replace(edges=edges) if edges else mechanism.graph, extras=extras)
 
@@ -77,13 +80,13 @@ def _with_namespaces(extra: Extra, declared: Mapping[str, str], context: Context
     return extra
 
 
-def _named_once(extra: Extra, key: Id, others: Iterable[Extra], context: Context) -> Extra:
-    """A sensor under a name that no other one of its link or joint has."""
+def _named_once(extra: Extra, key: Id, taken: set[str], context: Context) -> Extra:
+    """A sensor under a name that no other one of its link or joint has; the name is taken then."""
     found = _SENSOR_NAME.match(extra.text)
     if found is None:
         return extra
-    taken = {other[2] for other in (_SENSOR_NAME.match(added.text) for added in others) if other is not None}
     name = free_name(found[2], taken.__contains__, "_")
+    taken.add(name)
     if name == found[2]:
         return extra
     context.report.note(codes.RENAMED, f"{key} has two sensors called '{unescaped(found[2])}'; the second one is '{unescaped(name)}'")
