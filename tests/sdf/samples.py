@@ -107,6 +107,11 @@ SAMPLES = {
         '<link name="a"><visual name="visual"><geometry><sphere><radius>1</radius></sphere></geometry><material><ambient>1 0 0 1</ambient>'
         "<diffuse>1 0.5 0 1</diffuse><pbr><metal><albedo_map>a.png</albedo_map><metalness>0.25</metalness></metal></pbr></material></visual></link>"
     ),
+    "ambient colour": model(
+        '<link name="a"><visual name="v"><geometry><sphere><radius>1</radius></sphere></geometry><material><diffuse>1 0.50 0</diffuse>'
+        '<ambient>1 0.50 0</ambient></material></visual><visual name="w"><geometry><sphere><radius>1</radius></sphere></geometry><material>'
+        '<ambient my:kind="x" xmlns:my="urn:my">1 0 0 1</ambient><diffuse>1 0 0 1</diffuse><specular>1 1 1 1</specular></material></visual></link>'
+    ),
     "sensors": model(
         '<link name="a"><sensor name="i" type="imu"><update_rate>100</update_rate><imu><enable_orientation>false</enable_orientation></imu></sensor>'
         '<sensor name="c" type="camera"><pose>0 0 1 0 0 0</pose><camera><horizontal_fov>1.2</horizontal_fov><image><width>640</width>'

@@ -77,3 +77,9 @@ def test_a_model_goes_to_other_formats_and_back(tmp_path: Path) -> None:
         assert hx.load(str(tmp_path / name)).mechanism == hx.load(str(file)).mechanism, name
         verdict = hx.verify(str(file), str(tmp_path / name), samples=10)
         assert verdict.is_same, f"{name}: {[check for check in verdict.checks if not check.passed]}"
+
+
+def test_the_ambient_colour_that_is_written_beside_the_diffuse_one_is_no_loss(arm: Path) -> None:
+    result = hx.convert(str(arm / "arm.urdf"), str(arm / "arm.sdf"))
+    assert "<ambient>1 0 0 1</ambient>" in (arm / "arm.sdf").read_text("utf-8")
+    assert [loss for loss in result.losses if "material" in loss.field] == []

@@ -26,6 +26,7 @@ _DENSITY = Field("density", "density", NUMBER)
 _URI = Field("uri", "uri", TEXT)
 _SCALE = Field("scale", "scale", VECTOR, (1.0, 1.0, 1.0))
 _DIFFUSE = Field("diffuse", "rgba", COLOUR)
+_AMBIENT = Field("ambient", "rgba", COLOUR)
 
 
 def shape_tag(view: ShapeView, name: str, number: int, scope: str, sheet: SdfSheet) -> Tag:
@@ -103,8 +104,8 @@ def _add_material(visual: Tag, view: ShapeView, texts: Mapping[str, str], sheet:
     rgba = view.shape.rgba or (material.rgba if material is not None else None)
     if rgba is not None:
         tag = visual.child("material")
-        if not sheet.from_sdf:
-            sheet.add_text(tag, "ambient", COLOUR.write(rgba))
+        if not sheet.from_sdf or materials.AMBIENT in texts:
+            sheet.put(tag, _AMBIENT, rgba, texts, "material/")  # whose default is black
         sheet.put(tag, _DIFFUSE, rgba, texts, "material/")
     images = sheet.textures.get(view.material, {}) if view.material is not None else {}
     numbers = [] if material is None else [(tag, getattr(material, name)) for tag, name in materials.NUMBERS.items()]

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+AMBIENT = "material/ambient"
+"""The path of the colour without light, which is a notation where it is the diffuse one."""
 NUMBERS: Mapping[str, str] = MappingProxyType({"roughness": "roughness", "metalness": "metallic"})
 MAPS: Mapping[str, str] = MappingProxyType(
     {

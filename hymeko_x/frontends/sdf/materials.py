@@ -30,7 +30,7 @@ def read_material(visual: Node, key: Id, builder: SdfBuilder) -> tuple[Rgba | No
     if script is not None and missing:
         message = f"{visual.subject}: <script> without a {' and a '.join(missing)}, which libsdformat refuses, is kept as written"
         builder.warn(codes.MISSING_PART, script, message)
-    rgba = builder.child_value(node, "diffuse", COLOUR, None, key, "material/diffuse")
+    rgba = _read_colour(node, key, builder)
     pbr = node.child("pbr")
     metal = None if pbr is None else pbr.child("metal")
     if pbr is None or metal is None:
@@ -49,3 +49,13 @@ def read_material(visual: Node, key: Id, builder: SdfBuilder) -> tuple[Rgba | No
             builder.vertices[texture] = Texture(uri)
             builder.edges[builder.names.take("layer", texture.name)] = layer_edge(texture, material, use)
     return None, material
+
+
+def _read_colour(node: Node, key: Id, builder: SdfBuilder) -> Rgba | None:
+    """The diffuse colour. An ambient one with the same text is a notation: files that were written from other formats have both."""
+    texts = [None if (child := node.child(tag)) is None or child.children else child.text for tag in ("ambient", "diffuse")]
+    rgba: Rgba | None = builder.child_value(node, "diffuse", COLOUR, None, key, "material/diffuse")
+    if rgba is not None and texts[0] is not None and texts[0] == texts[1]:
+        builder.child_value(node, "ambient", COLOUR, None, key, words.AMBIENT)
+        builder.written.setdefault(key, {})[words.AMBIENT] = " ".join(texts[0].split())
+    return rgba
