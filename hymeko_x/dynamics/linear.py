@@ -9,6 +9,7 @@ from msgspec import Struct
 
 from hymeko_x import codes
 from hymeko_x.dynamics.numbers import symbols
+from hymeko_x.dynamics.transfer import transfer_functions
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -81,48 +82,19 @@ class StateSpace(Struct, frozen=True, dict=True):
         return reached(self.floats[0].T, self.floats[2].T)
 
     def transfer(self) -> list[list[Any]]:
-        """The transfer functions from each input (columns) to each output (rows), as exact fractions in s.
+        """The transfer functions from each free input (columns) to each output (rows), as fractions in s.
 
-        A position and its rate are one input: their transfer functions are added, the rate's times s.
-        Source: C (s I - A)^-1 B + D by the algorithm of Faddeev and LeVerrier.
+        Raises: Refusal (HX408), see :func:`hymeko_x.dynamics.transfer.transfer_functions`.
         """
-        import sympy
-
-        s = sympy.Symbol("s")
-        adjugate, polynomial = _resolvent(self.A, s)
-        whole = (self.C * adjugate * self.B + polynomial * self.D).applyfunc(sympy.expand)
         columns = {variable.name: number for number, variable in enumerate(self.inputs)}
-        free = [variable for variable in self.inputs if not variable.rate_of]
         rates = {variable.rate_of: columns[variable.name] for variable in self.inputs if variable.rate_of}
-        return [
-            [
-                sympy.cancel((whole[row, columns[v.name]] + (s * whole[row, rates[v.name]] if v.name in rates else 0)) / polynomial)
-                for v in free
-            ]
-            for row in range(whole.rows)
-        ]
+        pairs = [(columns[variable.name], rates.get(variable.name)) for variable in self.free_inputs]
+        return transfer_functions(self.A, self.B, self.C, self.D, pairs)
 
     @property
     def free_inputs(self) -> list[Variable]:
         """The inputs that are no rates of others: the columns of :meth:`transfer`."""
         return [variable for variable in self.inputs if not variable.rate_of]
-
-
-def _resolvent(a: sympy.Matrix, s: sympy.Symbol) -> tuple[sympy.Matrix, sympy.Expr]:
-    """The adjugate of s I - A, and its determinant."""
-    import sympy
-
-    n = a.rows
-    step = sympy.eye(n)
-    adjugate, polynomial = step * s ** max(n - 1, 0), s**n
-    for k in range(1, n + 1):
-        product = a * step
-        coefficient = sympy.together(-product.trace() / k)
-        polynomial += coefficient * s ** (n - k)
-        step = (product + coefficient * sympy.eye(n)).applyfunc(sympy.expand)
-        if k < n:
-            adjugate += step * s ** (n - 1 - k)
-    return adjugate, polynomial
 
 
 def reached(a: Floats, b: Floats) -> int:
