@@ -112,6 +112,9 @@ SAMPLES = {
         '<ambient>1 0.50 0</ambient></material></visual><visual name="w"><geometry><sphere><radius>1</radius></sphere></geometry><material>'
         '<ambient my:kind="x" xmlns:my="urn:my">1 0 0 1</ambient><diffuse>1 0 0 1</diffuse><specular>1 1 1 1</specular></material></visual></link>'
     ),
+    "an only model without links in a world": (
+        '<sdf version="1.9"><world name="w"><model name="m"><plugin name="p" filename="libp.so"/></model></world></sdf>'
+    ),
     "sensors": model(
         '<link name="a"><sensor name="i" type="imu"><update_rate>100</update_rate><imu><enable_orientation>false</enable_orientation></imu></sensor>'
         '<sensor name="c" type="camera"><pose>0 0 1 0 0 0</pose><camera><horizontal_fov>1.2</horizontal_fov><image><width>640</width>'

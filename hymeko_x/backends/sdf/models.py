@@ -48,7 +48,7 @@ def _add_models(place: Tag, sheet: SdfSheet) -> None:
     tags = {scope: Tag("model", {"name": sheet.model_name(scope)}) for scope in members if scope}
     tags[words.WORLD_SCOPE] = place
     tags[""] = Tag("model", {"name": sheet.mechanism.name}) if is_alone else place
-    if is_alone and (members or not in_world):
+    if is_alone and (members or sheet.from_sdf or not in_world):
         members.setdefault("", {})
         place.children.append(tags[""])
     for scope, keys in members.items():
