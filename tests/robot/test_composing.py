@@ -170,3 +170,17 @@ def test_soft_bodies_come_along_with_all_their_names() -> None:
     spec.worldbody.add_site(name="place")
     spec.attach(child, site=spec.site("place"), prefix="s/")
     check_same_model(e.robot.attach(hx.loads(soft, "mjcf"), at="place", prefix="s/").to_mujoco(), spec.compile())
+
+
+def test_sensors_of_a_hand_in_mjcf_come_along_on_an_arm_in_another_format() -> None:
+    sensors = """<sensor><force name="f" site="tip"/><jointpos name="p" joint="left"/><tendonpos name="t" tendon="split"/>
+      <actuatorfrc name="a" actuator="grip"/>
+      <framepos name="o" objtype="site" objname="tip" reftype="body" refname="left"/></sensor></mujoco>"""
+    text = HAND.replace("</mujoco>", sensors).replace('<geom name="block"', '<site name="tip"/><geom name="block"')
+    with claw().attach(hx.loads(text, "mjcf"), at="finger", prefix="h/").edit() as e:
+        e.add_sensor("own", "jointpos", of=e.joints["close"])
+        e.add_sensor("other", "force_torque", of=e.joints["close"])
+    model = e.robot.to_mujoco()
+    assert [model.sensor(number).name for number in range(model.nsensor)] == ["h/f", "h/p", "h/t", "h/a", "h/o", "own"]
+    assert model.joint(model.sensor("own").objid[0]).name == "close"
+    assert model.site(model.sensor("h/f").objid[0]).name == "h/tip"

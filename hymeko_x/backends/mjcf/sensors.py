@@ -15,17 +15,27 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.xml.printing import Tag
 
+_MEASURED = {
+    "frame": frozenset({*IMU, "velocimeter", "force", "torque", "touch", "rangefinder", "magnetometer"}),
+    "joint": frozenset(
+        {"jointpos", "jointvel", "jointactuatorfrc", "jointlimitpos", "jointlimitvel", "jointlimitfrc", "ballquat", "ballangvel"}
+    ),
+    "tendon": frozenset({"tendonpos", "tendonvel", "tendonactuatorfrc", "tendonlimitpos", "tendonlimitvel", "tendonlimitfrc"}),
+    "actuator": frozenset({"actuatorpos", "actuatorvel", "actuatorfrc"}),
+    "body": frozenset({"subtreecom", "subtreelinvel", "subtreeangmom"}),
+}
+"""MuJoCo's kinds of sensors that need nothing but the element that they measure, by its kind."""
 _SENSED = {"frame": "site", "shape": "geom", "world": "body"}
 
 
 def write_sensors(sheet: MjcfSheet) -> None:
-    """Every sensor of a mechanism that came from MJCF, and those of IMUs; others have kinds that MuJoCo does not have."""
+    """Every sensor of a mechanism that came from MJCF; of others those of MuJoCo's kinds that measure what it measures by them."""
     senses: dict[Id, tuple[RobotArc, ...]] = {}
     for _, _, arcs in sheet.mechanism.edges(Sense):
         senses |= {arc.target: arcs for arc in arcs if arc.sign < 0}
     items: list[tuple[Id, Tag]] = []
     for key, sensor in sheet.mechanism.vertices(Sensor):
-        if not sheet.from_mjcf and sensor.kind not in IMU:
+        if not sheet.from_mjcf and not _is_of_mujoco(sensor, senses.get(key, ())):
             continue
         parameters = sheet.parameters(sensor.parameters, f"sensor/{sensor.kind}", {})
         attributes = {
@@ -36,6 +46,13 @@ def write_sensors(sheet: MjcfSheet) -> None:
         }
         items.append((key, tag_of(sensor.kind, attributes, sheet.inside(key))))
     sheet.write_section("sensor", items)
+
+
+def _is_of_mujoco(sensor: Sensor, arcs: tuple[RobotArc, ...]) -> bool:
+    measured = [arc.target.kind for arc in arcs if arc.sign > 0]
+    if sensor.kind.startswith("frame") and "objtype" in dict(sensor.parameters):
+        return bool(measured)
+    return len(measured) == 1 and sensor.kind in _MEASURED.get(measured[0], ())
 
 
 def _sensed(sheet: MjcfSheet, arcs: tuple[RobotArc, ...], parameters: Mapping[str, str]) -> Attributes:
