@@ -99,6 +99,9 @@ SAMPLES = {
     "cone": shape("<cone><radius>1</radius><length>2</length></cone>"),
     "polyline": shape("<polyline><point>0 0</point><point>0 1</point><point>1 0</point><height>1</height></polyline>"),
     "heightmap": shape("<heightmap><uri>a.png</uri><size>1 2 3</size></heightmap>"),
+    "geometry that is empty": model(
+        '<link name="a"><visual name="v"><geometry/></visual><collision name="c"><geometry/></collision></link>'
+    ),
     "contact": model(
         f'<link name="a">{INERTIAL}<collision name="c"><geometry><empty/></geometry><surface><friction><ode><mu>0.5</mu><mu2>0.4</mu2></ode>'
         "</friction><contact><ode><kp>1e5</kp></ode></contact></surface></collision></link>"

@@ -35,7 +35,7 @@ def shape_tag(view: ShapeView, name: str, number: int, scope: str, sheet: SdfShe
     texts = sheet.written(view.id)
     pose, normal = _pose_of(view, texts)
     sheet.add_pose(tag, view.id, scope, view.body, pose=pose)
-    if not isinstance(view.shape.geometry, NoShape):
+    if not isinstance(view.shape.geometry, NoShape) or "geometry" in texts:
         _add_geometry(tag.add("geometry"), view, normal, texts, sheet)
     if view.shape.role is Role.VISUAL:
         _add_material(tag, view, texts, sheet)

@@ -55,6 +55,8 @@ def _read_geometry(shape: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry,
         builder.warn(codes.MISSING_PART, shape, f"{shape.subject}: <{shape.tag}> has no <geometry>; the shape has no geometry")
         return NoShape(), None, None
     node.taken = True
+    if not node.children:
+        builder.written.setdefault(key, {})["geometry"] = ""
     found = _geometry_of(node, shape, builder)
     if found is None or found.tag in words.OTHER_GEOMETRIES:
         tags = ", ".join(f"<{child.tag}>" for child in node.unread_children())
