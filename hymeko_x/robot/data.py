@@ -36,9 +36,13 @@ class RobotData(Named):
         """The tables behind the mappings."""
         return Draft(self.mechanism, lambda: self.completed, is_locked=True)
 
-    @cached_property
+    @property
     def completed(self) -> Mechanism:
         """The mechanism with what only the engine of its format computes, such as inertias from shapes."""
+        return self._completed
+
+    @cached_property
+    def _completed(self) -> Mechanism:
         return pipeline.fully_completed(self.mechanism, self.files, Report())
 
     def changed(self, mechanism: Mechanism, files: Files | None = None) -> Self:

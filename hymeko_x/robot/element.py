@@ -23,12 +23,14 @@ class Element:
         self.draft = draft
         self.id = key
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        """Assign a field. Raises: EditError for one that elements of this kind do not have."""
-        if name not in ("draft", "id") and not hasattr(type(self), name):
-            fields = [field for field in dir(type(self)) if not field.startswith("_")]
-            raise EditError(f"{self.id} has no {name!r}; {hint_of(name, fields, 'fields')}")
-        super().__setattr__(name, value)
+    if not TYPE_CHECKING:  # a type checker that sees it takes every field
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            """Assign a field. Raises: EditError for one that elements of this kind do not have."""
+            if name not in ("draft", "id") and not hasattr(type(self), name):
+                fields = [field for field in dir(type(self)) if not field.startswith("_")]
+                raise EditError(f"{self.id} has no {name!r}; {hint_of(name, fields, 'fields')}")
+            super().__setattr__(name, value)
 
     @property
     def name(self) -> str:

@@ -73,4 +73,6 @@ hx.load("arm.urdf").bodies["base"].shapes["visual"]
 hx.Pose.from_rpy(1, 2, 3)
 turned = hx.Pose.from_rpy((0, 0, 1)) * 2
 hx.load("arm.urdf").graph
+arm.joints["elbow"].limit = (-1, 1)
+session.bodies["fore"].colour = (1, 0, 0)
 """
