@@ -14,7 +14,7 @@ from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism, joint_edge, number
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import word
 from hymeko_x.ir.parts import Body, Dof, DofKind, Joint, World
-from hymeko_x.ir.values import IDENTITY, Pose
+from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse
 from hymeko_x.joining import held, on_body, with_names
 from hymeko_x.rewrite.references import names_of
 from hymeko_x.robot.data import RobotData
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from hymeko_x.ir.mechanism import Extra, RobotArc, RobotEdge
+    from hymeko_x.ir.parts import EdgePart
     from hymeko_x.ir.values import Vec3
     from hymeko_x.robot.element import Element
     from hymeko_x.robot.states import Change
@@ -54,7 +55,8 @@ def attach(
     """The host with the part attached to a body or frame; the names of the part get the prefix.
 
     The world of the part is where ``pose`` is in the frame ``at``: what stands there fixed or free is fixed, or moves by ``joint`` (a
-    type such as ``"hinge"``, or a Joint with its dofs). Options, units and other settings of the whole are those of the host.
+    type such as ``"hinge"``, or a Joint with its dofs); what is free stays free in the world. Options, units and
+    other settings of the whole are those of the host.
 
     Raises: EditError when names clash or a joint is given for several roots; KeyError when there is no such body or frame.
     """
@@ -68,7 +70,8 @@ def attach(
     located, files = with_files(base, pipeline.flattened(added), host.files, part.files)
     standing = _standing(with_names(located, lambda word: prefix + word), body, frame, _dofs(joint), part.name)
     whole = merged(pipeline.flattened(given), standing, source)
-    return host.changed(_with_states(whole, host.mechanism, part.mechanism, lambda word: prefix + word), files)
+    states = _shifted(part.mechanism, frame) if body == WORLD and frame != IDENTITY else part.mechanism
+    return host.changed(_with_states(whole, host.mechanism, states, lambda word: prefix + word), files)
 
 
 def compose_scene(
@@ -102,7 +105,7 @@ def _standing(part: Mechanism, body: Id, frame: Pose, dofs: Joint | None, name: 
         if all(arc.target != WORLD for arc in edge.arcs):
             continue
         arcs = tuple([on_body(arc, body, frame) if arc.target == WORLD else arc for arc in edge.arcs])
-        edges[key] = replace(edge, data=held(edge.data, dofs) if isinstance(edge.data, Joint) else edge.data, arcs=arcs)
+        edges[key] = replace(edge, data=_held(edge.data, body, dofs), arcs=arcs)
         notations[key] = {**notations.get(key, {}), ATTACHED.name: _remembered(name, edge)}
     names = names_in_use(part)
     for root in part.roots:
@@ -112,6 +115,32 @@ def _standing(part: Mechanism, body: Id, frame: Pose, dofs: Joint | None, name: 
             notations[key] = {ATTACHED.name: _remembered(name, None)}
     graph = part.graph.replace(edges=edges, without=[WORLD])
     return replace(part, graph=graph, notations=notations)
+
+
+def _held(part: EdgePart, body: Id, dofs: Joint | None) -> EdgePart:
+    """A joint to the world as one to the body; in the world what is free stays free."""
+    if not isinstance(part, Joint) or (body == WORLD and dofs is None):
+        return part
+    return held(part, dofs)
+
+
+def _shifted(part: Mechanism, frame: Pose) -> Mechanism:
+    """The part with named configurations in which what is free is seen from a world that is at the frame."""
+    return with_states(part, part, lambda word, key, numbers: (key, _moved(word, numbers, frame) if _is_free(part, key) else numbers))
+
+
+def _is_free(mechanism: Mechanism, key: Id | None) -> bool:
+    view = mechanism.joints.get(key) if key is not None else None
+    return view is not None and [dof.kind for dof in view.joint.dofs] == [DofKind.FREE]
+
+
+def _moved(word: str, numbers: tuple[float, ...], frame: Pose) -> tuple[float, ...]:
+    """The coordinates of a free joint from a world that is at the frame."""
+    if word != "qpos":
+        return numbers
+    x, y, z, *quat = numbers
+    there = compose(frame, Pose.from_quat((quat[0], quat[1], quat[2], quat[3]), (x, y, z)))
+    return (*there.xyz, *there.quat)
 
 
 def _dofs(joint: str | Joint | None) -> Joint | None:
@@ -162,8 +191,11 @@ def detach(robot: R, name: str) -> tuple[R, R]:
     name += "/" if all(body.startswith(f"{name}/") for body in named) else ""
     inside = {key for table in (whole.graph.vertices, whole.graph.edges) for key in table if key.name.startswith(name)}
     own = tuple([extra for extra in whole.extras.get(ROOT, ()) if _is_about(extra, name)])
-    part = with_names(_home(whole, inside, own), lambda word: word.removeprefix(name))
-    part = with_states(part, whole, _without_prefix(inside, name), lambda key: key.removeprefix(name) if key.startswith(name) else None)
+    home = _home(whole, inside, own)
+    part = with_names(home, lambda word: word.removeprefix(name))
+    part = with_states(
+        part, whole, _without_prefix(whole, home, inside, name), lambda key: key.removeprefix(name) if key.startswith(name) else None
+    )
     rest.remove(inside)
     left = rest.finished()
     others = tuple([extra for extra in left.extras.get(ROOT, ()) if extra not in own])
@@ -171,9 +203,18 @@ def detach(robot: R, name: str) -> tuple[R, R]:
     return robot.changed(with_states(left, left, with_ids({}), lambda key: None if key.startswith(name) else key)), robot.changed(part)
 
 
-def _without_prefix(inside: set[Id], prefix: str) -> Change:
-    """The change by which elements of a part lose its prefix, and others are gone."""
-    return lambda _word, key, numbers: (Id(key.kind, key.name.removeprefix(prefix)) if key in inside and key is not None else None, numbers)
+def _without_prefix(whole: Mechanism, home: Mechanism, inside: set[Id], prefix: str) -> Change:
+    """The change by which elements of a part lose its prefix and are in their own world again, and others are gone."""
+
+    def change(word: str, key: Id | None, numbers: tuple[float, ...]) -> tuple[Id | None, tuple[float, ...]]:
+        if key is None or key not in inside:
+            return None, numbers
+        if _is_free(whole, key) and key in home.joints:
+            frame = compose(home.joints[key].parent_pose, inverse(whole.joints[key].parent_pose))
+            numbers = _moved(word, numbers, frame)
+        return Id(key.kind, key.name.removeprefix(prefix)), numbers
+
+    return change
 
 
 def subtree(robot: R, body: str) -> R:

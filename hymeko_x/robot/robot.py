@@ -95,8 +95,9 @@ class Robot(RobotData):
         """This robot with another one on a body or frame of it; the names of the other one get the prefix.
 
         The world of the part is where ``pose`` is in the frame ``at``. What is fixed or free in its world is fixed to the body, or moves
-        by ``joint``: a type such as ``"hinge"``, or a Joint with its dofs. Settings of the whole (gravity, time step) are those of this
-        robot; classes are written out, files, materials, tendons, keyframes and extras of both come along.
+        by ``joint``: a type such as ``"hinge"``, or a Joint with its dofs; what is free stays free in the world. Settings of the whole
+        (gravity, time step) are those of this robot; classes are written out, files, materials, tendons, keyframes and extras of both
+        come along.
 
         Raises: EditError when names clash or a joint is given for several roots; KeyError when there is no such body or frame.
         """

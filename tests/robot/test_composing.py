@@ -184,3 +184,19 @@ def test_sensors_of_a_hand_in_mjcf_come_along_on_an_arm_in_another_format() -> N
     assert [model.sensor(number).name for number in range(model.nsensor)] == ["h/f", "h/p", "h/t", "h/a", "h/o", "own"]
     assert model.joint(model.sensor("own").objid[0]).name == "close"
     assert model.site(model.sensor("h/f").objid[0]).name == "h/tip"
+
+
+def test_what_floats_in_its_own_world_floats_in_a_scene() -> None:
+    drone = """<mujoco model="drone"><worldbody><body name="hull" pos="0 0 1"><freejoint name="fly"/><geom size=".1"/></body></worldbody>
+      <keyframe><key name="up" qpos="1 0 2 1 0 0 0"/></keyframe></mujoco>"""
+    part = hx.loads(drone, "mjcf")
+    scene = hx.compose((arm(), part), ((0, 0, 0), hx.Pose.from_rpy((0, 0, 90 * hx.deg), (5, 0, 0))), name="air")
+    model = scene.to_mujoco()
+    assert model.nq == 2 + 7
+    assert model.body("drone/hull").pos == pytest.approx([5, 0, 1])
+    assert model.key("drone/up").qpos[2:5] == pytest.approx([5, 1, 2])
+    assert model.key("drone/up").qpos[5:] == pytest.approx([np.sqrt(0.5), 0, 0, np.sqrt(0.5)])
+    assert [robot.dofs for robot in scene.split()] == [2, 6]
+    (_, back) = scene.detach("drone/")
+    check_same_model(back.to_mujoco(), part.to_mujoco())
+    assert arm().attach(part, at="flange", prefix="d/").to_mujoco().nq == 2
