@@ -107,7 +107,7 @@ WARNINGS: Mapping[Code, str] = {
     codes.PASSED_OVER: "the user allowed it, and has to remember",
     codes.BAD_NUMBER: "one number as a scale means the same in all directions",
     codes.MISSING_ATTRIBUTE: "the default is the format's own, or the value stays unspecified; a mesh without a file is as one not found",
-    codes.BAD_NAME: "nothing refers to a robot, a material or an actuator without a name",
+    codes.BAD_NAME: "nothing refers to a robot, a material, a transmission or an actuator without a name",
     codes.DUPLICATE_NAME: "both definitions are the same",
     codes.LEFTOVER_TEMPLATE: "a name is a name, and those that refer to it have the same text",
     codes.UNKNOWN_WORD: "the format ignores the element, or has a default for the word",

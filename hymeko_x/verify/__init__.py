@@ -63,7 +63,7 @@ def verify(
     read = partial(model_of, packages=packages, search_path=search_path, arguments=arguments, variants=variants)
     models, reasons = _read((a, b), read)
     if reasons:
-        return Verdict(("", ""), reason="; ".join(reasons))
+        return Verdict(("", ""), reason="; ".join(dict.fromkeys(reasons)))
     if joints:
         from hymeko_x.verify.groups import grouped
 

@@ -146,6 +146,12 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
             "2: error[HX022]: a <link> has no name; it is called 'link'",
         ],
     ),
+    "a transmission without a name": (
+        robot(LINK + "\n<transmission/>"),
+        [
+            "3: warning[HX022]: a <transmission> has no name; it is called 'transmission'",
+        ],
+    ),
     "two links of one name": (
         robot(LINK + "\n" + LINK),
         [

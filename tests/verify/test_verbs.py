@@ -133,16 +133,16 @@ def test_verify_says_in_the_engines_words_why_it_cannot_compare(arm: str, writte
     broken = written("mjcf", ARM_MJCF.replace('type="slide"', 'type="slyde"', 1))
     assert main(["verify", arm, str(broken)]) == exits.FAILED
     out = capsys.readouterr().out
-    assert out.startswith("not comparable: MuJoCo refuses the file: ")
+    assert out.startswith(f"not comparable: MuJoCo refuses {broken.name}: ")
     assert "slyde" in out
 
 
 def test_a_urdf_that_urdfdom_refuses_is_not_comparable(written: Write) -> None:
     broken = written("urdf", ARM_URDF.replace('<limit lower="-2" upper="2.5" effort="80" velocity="3"/>', ""))
-    verdict = hx.verify(broken, written("urdf", ARM_URDF))
+    verdict = hx.verify(broken, broken)
     assert verdict.verdict == "not comparable"
-    assert verdict.reason.startswith("urdfdom refuses the file: ")
-    assert "shoulder" in verdict.reason
+    sentences = "Joint [shoulder] is of type REVOLUTE but it does not specify limits; joint xml is not initialized correctly"
+    assert verdict.reason == f"urdfdom refuses {broken.name}: {sentences}"
 
 
 @pytest.mark.unread("HX021")
@@ -371,7 +371,7 @@ def test_a_profile_asks_only_for_what_it_needs(written: Write, capsys: pytest.Ca
 def test_a_hypergraph_without_bodies_is_no_robot(tmp_path: Path) -> None:
     text = tmp_path / "plain.hymeko"
     text.write_text("plain\nnode0 {\nx1 x2\nx3 x4\n@e1 {+x1 +x2 -x3 -x4}\n}\n")
-    assert hx.verify(text, text).reason == "; ".join(["the HyMeKo text describes a hypergraph without bodies, which is no robot"] * 2)
+    assert hx.verify(text, text).reason == "the HyMeKo text describes a hypergraph without bodies, which is no robot"
 
 
 def test_a_scene_without_bodies_is_compared_by_its_shapes(written: Write, tmp_path: Path) -> None:

@@ -133,7 +133,8 @@ def take_name(node: Node, kind: str, known: dict[str, Id], builder: UrdfBuilder)
     name = node.take("name")
     if not name:
         problem = f"has no name; it is called '{node.tag}'" if name is None else "has an empty name"
-        builder.error(codes.BAD_NAME, node, f"a <{node.tag}> {problem}")
+        report = builder.warn if known is builder.drives else builder.error
+        report(codes.BAD_NAME, node, f"a <{node.tag}> {problem}")
     key = builder.own(node, kind, node.tag if name is None else name)
     first = known.setdefault(key.name if name is None else name, key)
     if name is not None and first != key:

@@ -48,7 +48,7 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
             compiled = _compiled(path)
         except (ValueError, mujoco.FatalError) as error:
             reason = " ".join(str(error).split()) or output()
-            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses the file: {reason}", Origin(str(path))) from error
+            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses {path.name}: {reason}", Origin(str(path))) from error
     found = from_compiled(compiled)
     difference = disagreement(found, lambda q: np.stack([_engine_poses(compiled, row) for row in engine_coordinates(found, q)]))
     if difference:

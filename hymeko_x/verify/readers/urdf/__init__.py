@@ -49,6 +49,7 @@ UNREPRESENTED = frozenset(
 """urdfdom's <dynamics> and <limit> are those of one coordinate; a floating joint has six, and Pinocchio gives them none."""
 
 _INERTIA = re.compile(r"<inertia\s[^<>]*?(?=\s*/?>)")
+_PLACE_IN_URDFDOM = re.compile(r"\s+at line \d+ in \S+\.cpp\b")
 _ENTRIES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 _DUST = 1e-13
@@ -63,7 +64,7 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
 def read_text(data: bytes, path: Path, lookup: Lookup) -> KinematicModel:
     """The same for the text of the file at ``path``. Raises: Refusal HX302."""
     text, completed = _with_whole_tensors(data.decode("utf-8", "replace").replace("\x00", ""))
-    model = _build(text, str(path))
+    model = _build(text, path)
     second = load(text.encode(), path, lookup)
     if second.axisless:
         message = f"joint '{second.axisless}' has an axis of zero, about which nothing can move"
@@ -100,14 +101,20 @@ def _with_all_entries(tag: re.Match[str]) -> str:
     return tag[0] + "".join([f' {name}="0"' for name in _ENTRIES if not re.search(rf"\s{name}\s*=", tag[0])])
 
 
-def _build(text: str, file: str) -> Any:
+def _build(text: str, path: Path) -> Any:
     """Pinocchio's model. Raises: Refusal HX302."""
     with native_output() as output:
         try:
             return pin.buildModelFromXML(text, False)
         except (ValueError, RuntimeError, IndexError) as error:
-            reason = output() or " ".join(str(error).split())
-            raise refuse(codes.ENGINE_REFUSED, f"urdfdom refuses the file: {reason}", Origin(file)) from error
+            reason = _without_places(output()) or " ".join(str(error).split())
+            raise refuse(codes.ENGINE_REFUSED, f"urdfdom refuses {path.name}: {reason}", Origin(str(path))) from error
+
+
+def _without_places(output: str) -> str:
+    """urdfdom's sentences, each once, without the lines of its own source that it names behind each."""
+    sentences = [sentence.strip().removeprefix("Error:").strip() for sentence in _PLACE_IN_URDFDOM.split(output)]
+    return "; ".join(dict.fromkeys(filter(None, sentences)))
 
 
 # ---- bodies and joints -----------------------------------------------------------------------------------------------
