@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 import hymeko_x as hx
+from hymeko_x import pipeline
 from hymeko_x.compare.diff import Tolerance
 from hymeko_x.ir.parts import Box, Role
 from hymeko_x.testing import arms, mechanisms
@@ -123,21 +124,31 @@ def _shorter(e: Editing[hx.Robot]) -> None:
 EDITS = (_heavier, _shifted, _limited, _reversed, _damped, _renamed, _longer, _thicker, _shorter)
 
 
+@pytest.mark.parametrize("examples", [10, pytest.param(300, marks=pytest.mark.full)])
 @pytest.mark.parametrize("format", FORMATS)
-@FEW
-@given(ROBOTS, st.sampled_from(EDITS))
-def test_an_edit_commutes_with_conversion(format: str, robot: hx.Robot, edit: Callable[[Editing[hx.Robot]], None]) -> None:
-    def change(robot: hx.Robot) -> hx.Robot:
-        with robot.edit() as e:
-            edit(e)
-        return e.robot
+def test_an_edit_commutes_with_conversion(format: str, examples: int) -> None:
+    """An edit, then writing and reading, gives what writing, reading and the edit give. How an author groups attributes in
+    default classes is no part of it: each element is compared with all that it inherits."""
 
-    def converted(robot: hx.Robot) -> hx.Robot:
-        return hx.loads(hx.dumps(robot, format), format)
+    @settings(FEW, max_examples=examples)
+    @given(ROBOTS, st.sampled_from(EDITS))
+    def law(robot: hx.Robot, edit: Callable[[Editing[hx.Robot]], None]) -> None:
+        assume(edit is not _shorter or not robot.couplings)
+        assume(edit is not _reversed or format != "usd")  # a stage turns the frame of a joint, in which an axis is given
+        read = _converted(robot, format)
+        assert {*read.bodies} >= {*robot.bodies}
+        one, other = (_converted(_changed(each, edit), format) for each in (read, robot))
+        found = hx.diff(pipeline.flattened(one.mechanism), pipeline.flattened(other.mechanism), SINGLE if format == "usd" else DOUBLE)
+        assert found == ()
 
-    assume(edit is not _shorter or not robot.couplings)
-    assume(edit is not _reversed or format != "usd")  # a stage turns the frame of a joint, in which an axis is given
-    read = converted(robot)
-    assert {*read.bodies} >= {*robot.bodies}
-    found = hx.diff(converted(change(read)), converted(change(robot)), SINGLE if format == "usd" else DOUBLE)
-    assert [item for item in found if item.field != "mjcf @group"] == []  # a class or an attribute: both mean one role
+    law()
+
+
+def _changed(robot: hx.Robot, edit: Callable[[Editing[hx.Robot]], None]) -> hx.Robot:
+    with robot.edit() as e:
+        edit(e)
+    return e.robot
+
+
+def _converted(robot: hx.Robot, format: str) -> hx.Robot:
+    return hx.loads(hx.dumps(robot, format), format)
