@@ -13,6 +13,7 @@ from hymeko_x.ir.names import rename, with_dof_names
 from hymeko_x.ir.parts import DofKind, Joint, Material, Mesh, Shape, Texture
 from hymeko_x.ir.values import IDENTITY, Pose, compose
 from hymeko_x.rewrite.references import with_references
+from hymeko_x.states import with_states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -84,8 +85,36 @@ def on_body(arc: RobotArc, body: Id, frame: Pose) -> RobotArc:
     return replace(arc, target=body, weight=None if weight == IDENTITY else weight)
 
 
-def held(joint: Joint, dofs: Joint | None = None) -> Joint:
-    """A joint to the world as one to a body: with these dofs if there are some, else a free one is fixed."""
+def held(part: EdgePart, body: Id, dofs: Joint | None = None) -> EdgePart:
+    """A joint to the world as one to the body: with these dofs if there are some, else a free one is fixed, but for one in the world.
+
+    What is no joint stays as it is.
+    """
+    if not isinstance(part, Joint) or (body == WORLD and dofs is None):
+        return part
     if dofs is not None:
         return dofs
-    return Joint() if any(dof.kind is DofKind.FREE for dof in joint.dofs) else joint
+    return Joint() if any(dof.kind is DofKind.FREE for dof in part.dofs) else part
+
+
+# ---- what floats in the world --------------------------------------------------------------------------------------------------
+
+
+def shifted(part: Mechanism, frame: Pose) -> Mechanism:
+    """The part with named configurations in which what is free is seen from a world that is at the frame."""
+    return with_states(part, part, lambda word, key, numbers: (key, moved_state(word, numbers, frame) if is_free(part, key) else numbers))
+
+
+def is_free(mechanism: Mechanism, key: Id | None) -> bool:
+    """Whether an element is a free joint."""
+    view = mechanism.joints.get(key) if key is not None else None
+    return view is not None and [dof.kind for dof in view.joint.dofs] == [DofKind.FREE]
+
+
+def moved_state(word: str, numbers: tuple[float, ...], frame: Pose) -> tuple[float, ...]:
+    """The coordinates of a free joint from a world that is at the frame."""
+    if word != "qpos":
+        return numbers
+    x, y, z, *quat = numbers
+    there = compose(frame, Pose.from_quat((quat[0], quat[1], quat[2], quat[3]), (x, y, z)))
+    return (*there.xyz, *there.quat)

@@ -20,7 +20,7 @@ LAYERS = (
     ("source", "outline"),
     ("xml", "meshes", "networks"),
     ("formats",),
-    ("rewrite", "compare", "language", "factor", "extras"),
+    ("rewrite", "compare", "language", "factor", "extras", "states"),
     ("residue", "assets", "reporting", "joining"),
     ("frontends", "backends"),
     ("targets",),

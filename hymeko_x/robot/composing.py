@@ -15,7 +15,7 @@ from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import word
 from hymeko_x.ir.parts import Body, Dof, DofKind, Joint, World
 from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse
-from hymeko_x.joining import held, on_body, with_names
+from hymeko_x.joining import held, is_free, moved_state, on_body, shifted, with_names
 from hymeko_x.rewrite.references import names_of
 from hymeko_x.robot.data import RobotData
 from hymeko_x.robot.draft import Draft
@@ -23,16 +23,15 @@ from hymeko_x.robot.editing import dofs_of, place
 from hymeko_x.robot.errors import EditError, unknown_name
 from hymeko_x.robot.joining import merged, provenance_of, with_files
 from hymeko_x.robot.parting import ASSETS, below, part_of
-from hymeko_x.robot.states import with_ids, with_states
+from hymeko_x.states import with_ids, with_states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from hymeko_x.ir.mechanism import Extra, RobotArc, RobotEdge
-    from hymeko_x.ir.parts import EdgePart
     from hymeko_x.ir.values import Vec3
     from hymeko_x.robot.element import Element
-    from hymeko_x.robot.states import Change
+    from hymeko_x.states import Change
 
 R = TypeVar("R", bound=RobotData)
 
@@ -70,7 +69,7 @@ def attach(
     located, files = with_files(base, pipeline.flattened(added), host.files, part.files)
     standing = _standing(with_names(located, lambda word: prefix + word), body, frame, _dofs(joint), part.name)
     whole = merged(pipeline.flattened(given), standing, source)
-    states = _shifted(part.mechanism, frame) if body == WORLD and frame != IDENTITY else part.mechanism
+    states = shifted(part.mechanism, frame) if body == WORLD and frame != IDENTITY else part.mechanism
     return host.changed(_with_states(whole, host.mechanism, states, lambda word: prefix + word), files)
 
 
@@ -105,7 +104,7 @@ def _standing(part: Mechanism, body: Id, frame: Pose, dofs: Joint | None, name: 
         if all(arc.target != WORLD for arc in edge.arcs):
             continue
         arcs = tuple([on_body(arc, body, frame) if arc.target == WORLD else arc for arc in edge.arcs])
-        edges[key] = replace(edge, data=_held(edge.data, body, dofs), arcs=arcs)
+        edges[key] = replace(edge, data=held(edge.data, body, dofs), arcs=arcs)
         notations[key] = {**notations.get(key, {}), ATTACHED.name: _remembered(name, edge)}
     names = names_in_use(part)
     for root in part.roots:
@@ -115,32 +114,6 @@ def _standing(part: Mechanism, body: Id, frame: Pose, dofs: Joint | None, name: 
             notations[key] = {ATTACHED.name: _remembered(name, None)}
     graph = part.graph.replace(edges=edges, without=[WORLD])
     return replace(part, graph=graph, notations=notations)
-
-
-def _held(part: EdgePart, body: Id, dofs: Joint | None) -> EdgePart:
-    """A joint to the world as one to the body; in the world what is free stays free."""
-    if not isinstance(part, Joint) or (body == WORLD and dofs is None):
-        return part
-    return held(part, dofs)
-
-
-def _shifted(part: Mechanism, frame: Pose) -> Mechanism:
-    """The part with named configurations in which what is free is seen from a world that is at the frame."""
-    return with_states(part, part, lambda word, key, numbers: (key, _moved(word, numbers, frame) if _is_free(part, key) else numbers))
-
-
-def _is_free(mechanism: Mechanism, key: Id | None) -> bool:
-    view = mechanism.joints.get(key) if key is not None else None
-    return view is not None and [dof.kind for dof in view.joint.dofs] == [DofKind.FREE]
-
-
-def _moved(word: str, numbers: tuple[float, ...], frame: Pose) -> tuple[float, ...]:
-    """The coordinates of a free joint from a world that is at the frame."""
-    if word != "qpos":
-        return numbers
-    x, y, z, *quat = numbers
-    there = compose(frame, Pose.from_quat((quat[0], quat[1], quat[2], quat[3]), (x, y, z)))
-    return (*there.xyz, *there.quat)
 
 
 def _dofs(joint: str | Joint | None) -> Joint | None:
@@ -209,9 +182,9 @@ def _without_prefix(whole: Mechanism, home: Mechanism, inside: set[Id], prefix: 
     def change(word: str, key: Id | None, numbers: tuple[float, ...]) -> tuple[Id | None, tuple[float, ...]]:
         if key is None or key not in inside:
             return None, numbers
-        if _is_free(whole, key) and key in home.joints:
+        if is_free(whole, key) and key in home.joints:
             frame = compose(home.joints[key].parent_pose, inverse(whole.joints[key].parent_pose))
-            numbers = _moved(word, numbers, frame)
+            numbers = moved_state(word, numbers, frame)
         return Id(key.kind, key.name.removeprefix(prefix)), numbers
 
     return change

@@ -19,7 +19,7 @@ from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Joint, Material, Mesh, Shape, Texture, World
 from hymeko_x.rewrite.references import with_references, without_references
 from hymeko_x.robot.errors import EditError
-from hymeko_x.robot.states import with_ids, with_states
+from hymeko_x.states import with_ids, with_states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping

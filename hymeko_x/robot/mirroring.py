@@ -11,7 +11,7 @@ from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import has_numbers, pose_weight
 from hymeko_x.ir.parts import Body, Dof, DofKind, Drive, Joint, Loop, Mesh, Mount, Stance
 from hymeko_x.ir.values import IDENTITY, Pose, compose, unit_quat
-from hymeko_x.robot.states import with_states
+from hymeko_x.states import with_states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

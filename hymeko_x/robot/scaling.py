@@ -15,7 +15,7 @@ from hymeko_x.ir.parts import Body, Coupling, Dof, DofKind, Frame, Joint, Limits
 from hymeko_x.ir.tendons import FIXED
 from hymeko_x.ir.values import Pose, Written
 from hymeko_x.robot.errors import EditError
-from hymeko_x.robot.states import with_states
+from hymeko_x.states import with_states
 
 if TYPE_CHECKING:
     from hymeko_x.ir.fields import DataValue

@@ -90,6 +90,23 @@ def test_a_joint_of_the_text_leads_to_the_root_of_an_instance(here: Path) -> Non
     assert np.allclose(poses["tool_palm"].matrix(), at_palm.matrix(), atol=1e-12)
 
 
+@pytest.mark.parametrize("place", ["at [[5 0 0] [0 0 90]]", "[[5 0 0] [0 0 90]] + world"])
+def test_what_floats_in_its_own_file_floats_in_the_world_of_the_text(here: Path, place: str) -> None:
+    drone = """<mujoco model="drone"><worldbody><body name="hull" pos="0 0 1"><freejoint name="fly"/><geom size=".1"/></body></worldbody>
+      <keyframe><key name="up" qpos="1 0 2 1 0 0 0"/></keyframe></mujoco>"""
+    (here / "drone.xml").write_text(drone)
+    robot = load(here, f'import "arm.xml" as arm import "drone.xml" as drone air : robot {{ arm : arm {{}} d : drone {{ {place} }} }}')
+    pose = hx.Pose.from_rpy((0, 0, 90 * hx.deg), (5, 0, 0))
+    composed = hx.compose((hx.load(here / "arm.xml"), hx.load(here / "drone.xml")), ((0, 0, 0), pose), name="air")
+    ours, theirs = robot.to_mujoco(), composed.to_mujoco()
+    assert (robot.joints["d_fly"].type, ours.nq) == ("free", theirs.nq)
+    assert ours.qpos0.tolist() == theirs.qpos0.tolist()
+    assert ours.key("d_up").qpos.tolist() == theirs.key("drone/up").qpos.tolist()
+    assert ours.key("d_up").qpos[2:5] == pytest.approx([5, 1, 2])
+    fixed = load(here, 'import "arm.xml" as arm import "drone.xml" as drone air : robot { a : arm {} d : drone { + a.flange } }')
+    assert fixed.joints["d_fly"].type == "fixed"
+
+
 def test_elements_of_an_instance_change_from_inside_and_outside(here: Path) -> None:
     robot = load(
         here,

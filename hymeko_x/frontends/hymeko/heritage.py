@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from hymeko_x import formats
 from hymeko_x.ir.parts import Body, Shape
 from hymeko_x.ir.solids import with_tensor_of
+from hymeko_x.joining import shifted
 from hymeko_x.rewrite.inertia import moving_bodies, welded_to
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def with_heritage(whole: Mechanism, instances: Sequence[Imported]) -> Mechanism:
     if row.joins is not None:
         joins: Callable[..., Mechanism] = formats.loaded(row.joins)
         for one in instances:
-            found = joins(found, found, one.original, one.renamed)
+            found = joins(found, found, shifted(one.original, one.floor), one.renamed)
     return found
 
 

@@ -37,6 +37,8 @@ class Imported(Struct):
     instance: Instance
     robot: Mechanism
     original: Mechanism
+    floor: Pose = IDENTITY
+    """Where its world is in the world of the text."""
 
     @property
     def name(self) -> str:
@@ -121,6 +123,8 @@ def place_instance(builder: HymekoBuilder, imported: Imported, owners: dict[Id, 
         raise builder.reader.refuse(imported.instance.node, message)
     if taken is not None:
         place = _parent_of(builder.edges[taken])
+    if place is not None and place[0] == WORLD and taken is None:
+        imported.floor = place[1]
     gone = _without_joints(builder, imported, place, taken)
     if place is not None and taken is None:
         _hold_open_roots(builder, imported, place, [root for root in roots if root not in imported.robot.parent_joint])
@@ -193,7 +197,7 @@ def _without_joints(builder: HymekoBuilder, imported: Imported, place: tuple[Id,
             gone.add(key)
         elif place is not None:
             arcs = tuple([on_body(arc, *place) if arc.target == WORLD else arc for arc in edge.arcs])
-            builder.edges[key] = replace(edge, data=held(edge.data) if isinstance(edge.data, Joint) else edge.data, arcs=arcs)
+            builder.edges[key] = replace(edge, data=held(edge.data, place[0]), arcs=arcs)
     return gone
 
 
