@@ -30,6 +30,15 @@ def with_states(
     return found
 
 
+def states_of(mechanism: Mechanism) -> dict[str, Mapping[Id, Numbers]]:
+    """The named configurations that the format of the robot keeps as texts: coordinates by joint, in rad or m."""
+    row = formats.native_format(mechanism)
+    if row is None or row.poses is None:
+        return {}
+    found: list[tuple[str, Mapping[Id, Numbers]]] = formats.loaded(row.poses)(mechanism)
+    return {name: values for name, values in found if name}
+
+
 def with_ids(now: Mapping[Id, Id]) -> Change:
     """The change by which elements have other ids, and the same numbers."""
     return lambda _word, key, numbers: (now.get(key, key) if key is not None else None, numbers)

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
-from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, pose_weight
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, numbers_weight, pose_weight
 from hymeko_x.ir.parts import MESH_POINTS, Body, DofKind, Joint, Mesh, Mount, Sense, Shape, Stance
 from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
 from hymeko_x.rewrite.efforts import actuator_efforts
@@ -41,7 +41,8 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
     """
     alike: dict[Id, bool] = {}
     native = formats.native_format(before)
-    efforts, described = actuator_efforts(before), {*_links(before, after), *_keyframes(before, after), *_in_fragments(before, after)}
+    efforts = actuator_efforts(before)
+    described = {*_links(before, after), *_keyframes(before, after, tolerance), *_in_fragments(before, after)}
     weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
     for difference in found:
         key = difference.element
@@ -82,13 +83,15 @@ def _links(before: Mechanism, after: Mechanism) -> frozenset[Id]:
     return frozenset(key for view in views for key in (view.id, view.thing))
 
 
-def _keyframes(before: Mechanism, after: Mechanism) -> Iterator[Id]:
+def _keyframes(before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Id]:
     """The poses, with their stances, that the other mechanism keeps as texts of its format."""
     row = formats.of_source(after)
     kept = dict(formats.loaded(row.poses)(after)) if row is not None and row.poses is not None else {}
     for key, _, arcs in before.edges(Stance) if kept else ():
         pose = end_of(arcs, 1)
-        if pose is not None and all(kept.get(pose.name, {}).get(arc.target) == arc.weight for arc in arcs if arc.sign == 0):
+        values = kept.get(pose.name, {}) if pose is not None else {}
+        pairs = [(values.get(arc.target, ()), numbers_weight(arc)) for arc in arcs if arc.sign == 0]
+        if pose is not None and all(len(a) == len(b) and tolerance.accepts_all(a, b) for a, b in pairs):
             yield from (key, pose)
 
 

@@ -119,6 +119,7 @@ MJCF = Format(
     poses="hymeko_x.formats.mjcf.keyframes:poses",
     joins="hymeko_x.formats.mjcf.keyframes:joined",
     restates="hymeko_x.formats.mjcf.keyframes:restated",
+    resizes="hymeko_x.formats.mjcf.sizes:resized",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
     numbers_constraints=True,
     mesh_reader="hymeko_x.meshes.tables:read_mesh",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from os import PathLike
 from typing import TYPE_CHECKING, TypeVar
 
 from msgspec.json import decode, encode
@@ -59,6 +60,7 @@ def attach(
 
     Raises: EditError when names clash or a joint is given for several roots; KeyError when there is no such body or frame.
     """
+    check_robot(part)
     draft = Draft(host.mechanism, lambda: host.completed, is_locked=False)
     body, frame = place(draft, at, pose)
     base = replace(host.mechanism, graph=host.mechanism.graph.replace(vertices={WORLD: World()})) if body == WORLD else host.mechanism
@@ -85,12 +87,21 @@ def compose_scene(
             raise EditError(f"scene '{name}' has {len(robots)} robots and {len(given)} {what}")
     if not robots:
         raise EditError(f"scene '{name}' has no robots")
+    for robot in robots:
+        check_robot(robot)
     scene = robots[0].changed(Mechanism(name, Hypergraph({WORLD: World()}), source=robots[0].mechanism.source))
     used = names_in_use(Mechanism(name))
     for number, robot in enumerate(robots):
         prefix = used.take("robot", names[number] if names else robot.name or "robot").name
         scene = attach(scene, robot, prefix=f"{prefix}/", pose=IDENTITY if poses is None else poses[number])
     return scene
+
+
+def check_robot(part: object) -> None:
+    """Raises: EditError for what is no robot, such as a path, with what to give instead."""
+    if not isinstance(part, RobotData):
+        hint = f"; give hymeko_x.load({str(part)!r})" if isinstance(part, str | PathLike) else ""
+        raise EditError(f"a part is a Robot, found {part!r}{hint}")
 
 
 def _standing(part: Mechanism, body: Id, frame: Pose, dofs: Joint | None, name: str) -> Mechanism:

@@ -19,7 +19,7 @@ from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Joint, Material, Mesh, Shape, Texture, World
 from hymeko_x.rewrite.references import with_references, without_references
 from hymeko_x.robot.errors import EditError
-from hymeko_x.states import with_ids, with_states
+from hymeko_x.states import states_of, with_ids, with_states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -44,6 +44,7 @@ class Draft:
         self._was: dict[Id, Id] = {}
         self._gone: set[Id] = set()
         self._named: set[Id] = set()
+        self._states: dict[str, str | None] = {}
         self._at: dict[Id, dict[Id, None]] = {}
         for key, edge in self.edges.items():
             for arc in edge.arcs:
@@ -243,6 +244,29 @@ class Draft:
         for arc in self.edges[key].arcs:
             self._at.get(arc.target, {}).pop(key, None)
 
+    def call_state(self, name: str, new: str | None) -> None:
+        """Give a named configuration that the robot's format keeps as text another name, or none to remove it."""
+        self.check_open(Id("pose", name))
+        own = next((old for old, now in self._states.items() if now == name), name)
+        self._states[own] = new
+
+    def states(self) -> dict[str, Mapping[Id, tuple[float, ...]]]:
+        """The named configurations that the robot's format keeps as texts, as they are now: coordinates by joint, in rad or m."""
+        now = {old: new for new, old in self._was.items()}
+        named = ((self._states.get(name, name), values) for name, values in self._kept_states.items())
+        return {
+            name: {key: numbers for old, numbers in values.items() if (key := now.get(old, old)) in self}
+            for name, values in named
+            if name is not None
+        }
+
+    @cached_property
+    def _kept_states(self) -> dict[str, Mapping[Id, tuple[float, ...]]]:
+        return states_of(self.mechanism)
+
+    def _called(self, name: str) -> str | None:
+        return self._states.get(name, name)
+
     # ---- the result ------------------------------------------------------------------------------------------------------
 
     def finished(self, name: str | None = None) -> Mechanism:
@@ -252,7 +276,7 @@ class Draft:
         graph = Hypergraph(_in_order(self.vertices, source.graph.vertices, now), _in_order(self.edges, source.graph.edges, now))
         changed = replace(source, name=source.name if name is None else name, graph=graph)
         if not (now or self._gone):
-            return with_states(changed, source, with_ids(now))
+            return with_states(changed, source, with_ids(now), self._called)
         changed = replace(
             changed,
             extras=self._kept(source.extras, now),
@@ -263,7 +287,7 @@ class Draft:
             layout=tuple([now.get(key, key) for key in source.layout if key not in self._gone]),
         )
         named = with_references(without_references(changed, frozenset(self._gone_names())), now)
-        return with_states(named, source, with_ids(now))
+        return with_states(named, source, with_ids(now), self._called)
 
     def _gone_names(self) -> Iterator[Id]:
         """What removed elements are called in their file: their ids, the names of shapes, and those of dofs."""

@@ -35,6 +35,7 @@ from hymeko_x.robot.element import Element
 from hymeko_x.robot.errors import EditError, unknown_name
 from hymeko_x.robot.kinematics import width_of
 from hymeko_x.robot.named import Named
+from hymeko_x.robot.poses import StateElement
 from hymeko_x.robot.values import as_pose, plain_value
 
 if TYPE_CHECKING:
@@ -229,6 +230,8 @@ class Editing(Named, Generic[R]):
     def add_pose(self, name: str, values: Mapping[str, float | Sequence[float]]) -> el.PoseSetElement:
         """A named configuration: the coordinates of joints in rad or m, of a ball the quaternion (w, x, y, z)."""
         key = self._draft.new_id("pose", name)
+        if name in self.poses:
+            raise EditError(f"there is a {key} already")
         arcs: list[RobotArc] = [Arc(key, 1)]
         for joint, value in values.items():
             view = self.joints[joint]
@@ -262,13 +265,20 @@ class Editing(Named, Generic[R]):
         found = self._any(element)
         if isinstance(found, el.BodyElement):
             self._draft.remove([body.id for body in found.subtree()])
+        elif isinstance(found, StateElement):
+            self._draft.call_state(found.name, None)
         else:
             self._draft.remove([found.id])
 
     def rename(self, element: str | Element, name: str) -> None:
         """Give an element another name, wherever it occurs."""
         found = self._any(element)
-        self._draft.rename(found.id, name)
+        if not isinstance(found, StateElement):
+            self._draft.rename(found.id, name)
+        elif name not in self.poses:
+            self._draft.call_state(found.name, name)
+        elif name != found.name:
+            raise EditError(f"there is a {Id('pose', name)} already")
 
     # ---- finding ---------------------------------------------------------------------------------------------------------
 
@@ -281,6 +291,8 @@ class Editing(Named, Generic[R]):
         if len(found) > 1:
             ways = " or ".join(f"e.{el.KINDS[key.kind][0]}[{element!r}]" for key in found)
             raise EditError(f"'{element}' is the name of {' and of '.join(str(key) for key in found)}; give {ways}")
+        if not found and element in self.poses:
+            return self.poses[element]
         if not found:
             names = dict.fromkeys(key.name for kind in el.KINDS for key in self._draft.ids(kind))
             raise unknown_name("element", element, names)
@@ -288,6 +300,8 @@ class Editing(Named, Generic[R]):
 
     def _own(self, element: Element) -> Element:
         """The element of this session: one of the robot that is edited stands for it."""
+        if isinstance(element, StateElement) and element.name in self.poses:
+            return self.poses[element.name]
         if element.id not in self._draft:
             raise EditError(f"{element.id} is not in robot '{self.name}'")
         return el.view_of(self._draft, element.id)

@@ -19,6 +19,7 @@ from hymeko_x.robot.fields import (
     LimitsField,
     PartField,
     PoseField,
+    TensorField,
     between_zero_and_one,
     not_negative,
     ordered,
@@ -43,7 +44,7 @@ class BodyElement(Element):
     """Mass in kg; None = unspecified, or computed from the shapes."""
     com = InertialField[Vec3](None)
     """Centre of mass in m, in the body's frame; None without an inertial."""
-    tensor = InertialField[Tensor | None](None)
+    tensor = TensorField[Tensor | None](None)
     """Inertia tensor in kg m^2 about the centre of mass, in the body's axes."""
 
     @property

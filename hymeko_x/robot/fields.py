@@ -14,6 +14,7 @@ from hymeko_x.ir.types import fits, hints_of, settled
 from hymeko_x.ir.values import IDENTITY, unit
 from hymeko_x.robot.errors import EditError
 from hymeko_x.robot.values import as_pose, plain_value
+from hymeko_x.validation import tensor_fault
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,6 +79,17 @@ class InertialField(PartField[T]):
     def store(self, element: Element, carrier: Inertial) -> None:
         """Put the changed inertial back."""
         element.draft.set_part(element.id, replace(element.part, inertial=carrier))
+
+
+class TensorField(InertialField[T]):
+    """The tensor of a body's inertial: one that a body can have."""
+
+    def store(self, element: Element, carrier: Inertial) -> None:
+        """Put the changed inertial back. Raises: EditError where a principal moment is negative, or exceeds the sum of the others."""
+        fault = tensor_fault(replace(carrier, mass=None))
+        if fault is not None:
+            raise EditError(fault.format(element.id))
+        super().store(element, carrier)
 
 
 class DofField(PartField[T]):

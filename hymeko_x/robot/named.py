@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.robot import elements as el
 from hymeko_x.robot.element import Elements
+from hymeko_x.robot.poses import Poses
 
 if TYPE_CHECKING:
     from hymeko_x.robot.draft import Draft
@@ -86,9 +87,9 @@ class Named:
         return Elements(self.draft, "texture", el.TextureElement)
 
     @property
-    def poses(self) -> Elements[el.PoseSetElement]:
-        """The named configurations that every format understands (group states); an MJCF file's keyframes come along as texts."""
-        return Elements(self.draft, "pose", el.PoseSetElement)
+    def poses(self) -> Poses:
+        """The named configurations: group states, poses of HyMeKo, and keyframes of MJCF that have a name, of which ``values`` are read."""
+        return Poses(self.draft, "pose", el.PoseSetElement)
 
     @property
     def couplings(self) -> Elements[el.RelationElement]:

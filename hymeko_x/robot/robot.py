@@ -135,7 +135,8 @@ class Robot(RobotData):
     def scaled(self, factor: float) -> Robot:
         """Another size: lengths times the factor, masses times its cube, times as they are; every typed number by its dimension.
 
-        Parameters of actuators and sensors, and extras, stay as they are. Raises: EditError unless the factor is positive.
+        So do margins, gaps and widths of MJCF. Parameters of actuators and sensors, other extras, and what is left to the defaults of an
+        engine stay as they are. Raises: EditError unless the factor is positive.
         """
         return self.changed(scale(self.mechanism, float(factor)))
 

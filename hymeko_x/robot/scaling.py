@@ -3,36 +3,63 @@
 from __future__ import annotations
 
 import math
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from hymeko_x import formats, pipeline
 from hymeko_x.ir.geometry import Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import has_numbers
-from hymeko_x.ir.parts import Body, Coupling, Dof, DofKind, Frame, Joint, Limits, Loop, Mesh, Shape, Stance, Tendon
+from hymeko_x.ir.parts import Body, Contact, Coupling, Dof, DofKind, Frame, Joint, Limits, Loop, Mesh, Shape, Stance, Tendon
 from hymeko_x.ir.tendons import FIXED
 from hymeko_x.ir.values import Pose, Written
 from hymeko_x.robot.errors import EditError
 from hymeko_x.states import with_states
 
 if TYPE_CHECKING:
-    from hymeko_x.ir.fields import DataValue
+    from collections.abc import Mapping
+
     from hymeko_x.ir.geometry import Geometry
     from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism, RobotArc, RobotEdge
-    from hymeko_x.ir.parts import EdgePart, Inertial, VertexPart
+    from hymeko_x.ir.parts import EdgePart, Inertial, Parameters, VertexPart
+
+
+Parameter = float | str | tuple[float, ...]
 
 
 def scale(mechanism: Mechanism, s: float) -> Mechanism:
     """The mechanism with lengths times ``s``. Raises: EditError unless the factor is a positive number."""
     if not (math.isfinite(s) and s > 0):
         raise EditError(f"robot '{mechanism.name}': a factor is a positive number, found {s!r}")
+    mechanism = _with_extras(mechanism, s)
     vertices = {key: _vertex(part, s) for key, part in mechanism.graph.vertices.items()}
     edges = {key: _edge(edge, mechanism, s) for key, edge in mechanism.graph.edges.items()}
     big = replace(mechanism, graph=Hypergraph(vertices, edges))
     return with_states(big, mechanism, lambda word, key, numbers: (key, _state(word, key, numbers, mechanism, s)))
+
+
+def _with_extras(mechanism: Mechanism, s: float) -> Mechanism:
+    """The mechanism whose extras have the new size already, as far as their format gives their dimensions."""
+    row = formats.native_format(mechanism)
+    if row is None or row.resizes is None:
+        return mechanism
+
+    def factor(key: Id, number: int) -> float:
+        edge = mechanism.graph.edges.get(key)
+        if edge is not None and isinstance(edge.data, Joint | Coupling):
+            found = edge.data.dofs[number : number + 1] if isinstance(edge.data, Joint) else ()
+            return _length(found[0], s) if found else _length_of(edge.arcs[0], mechanism, s) if edge.arcs else 1.0
+        return s
+
+    resized: Mechanism | None = formats.loaded(row.resizes)(mechanism, s, factor)
+    if resized is not None:
+        return resized
+    mechanism = pipeline.flattened(mechanism)
+    return formats.loaded(row.resizes)(mechanism, s, factor) or mechanism
 
 
 def _state(word: str, key: Id | None, numbers: tuple[float, ...], mechanism: Mechanism, s: float) -> tuple[float, ...]:
@@ -78,17 +105,44 @@ def _edge(edge: RobotEdge, mechanism: Mechanism, s: float) -> RobotEdge:
 
 
 def _edge_part(part: EdgePart, s: float) -> EdgePart:
-    if isinstance(part, Joint | Loop):
+    if isinstance(part, Joint):
         return replace(part, dofs=tuple([_dof(dof, s) for dof in part.dofs]))
+    if isinstance(part, Loop):
+        return replace(part, dofs=tuple([_dof(dof, s) for dof in part.dofs]), parameters=_parameters(part.parameters, s))
+    if isinstance(part, Contact):
+        return replace(part, parameters=_parameters(part.parameters, s, friction=s))
     if isinstance(part, Shape):
-        return replace(part, geometry=_geometry(part.geometry, s), mass=None if part.mass is None else part.mass * s**3)
+        mass = None if part.mass is None else part.mass * s**3
+        friction = (*part.friction[:1], *_times(part.friction[1:], s))  # torsional and rolling ones are lengths
+        return replace(part, geometry=_geometry(part.geometry, s), mass=mass, friction=friction)
     return part
+
+
+def _parameters(parameters: Parameters, s: float, **rests: float) -> Parameters:
+    """Parameters of constraints: margins, gaps and the widths of impedances are lengths, and so is what a torque is divided by.
+
+    ``rests`` are the factors on further ones.
+    """
+    found = {"margin": s, "gap": s, "torquescale": s, "solimp": s, "solimplimit": s, **rests}
+    return tuple([(name, _parameter(name, value, found[name]) if name in found else value) for name, value in parameters])
+
+
+def _parameter(name: str, value: Parameter, factor: float) -> Parameter:
+    """A parameter times a factor, of an impedance its width; one of MuJoCo's -1, which means that it is computed, stays."""
+    if not isinstance(value, tuple):
+        return value * factor if isinstance(value, float) and value != -1.0 else value
+    first, end = _SCALED.get(name, (0, len(value)))
+    inner = [number if number == -1.0 else number * factor for number in value[first:end]]
+    return (*value[:first], *inner, *value[end:])
+
+
+_SCALED: Mapping[str, tuple[int, int]] = MappingProxyType({"solimp": (2, 3), "solimplimit": (2, 3), "friction": (2, 5)})
+"""Which numbers of parameters that have several are lengths: of a contact's friction the torsional and the rolling ones."""
 
 
 def _tendon(part: Tendon, length: float, s: float) -> Tendon:
     """``length`` is the factor on what it measures: paths and combinations of slides are lengths, other combinations are angles."""
     moment = s**5 / length**2
-    rests = {"springlength": length}
     return replace(
         part,
         limits=_limits(part.limits, length, moment * length),
@@ -97,15 +151,8 @@ def _tendon(part: Tendon, length: float, s: float) -> Tendon:
         friction=part.friction * moment * length,
         armature=part.armature * moment,
         width=None if part.width is None else part.width * s,
-        parameters=tuple([(name, _times_any(value, rests.get(name, 1.0))) for name, value in part.parameters]),
+        parameters=_parameters(part.parameters, length, springlength=length),
     )
-
-
-def _times_any(value: DataValue, factor: float) -> DataValue:
-    """A parameter times a factor; one of MuJoCo's -1, which means that it is computed, stays."""
-    if isinstance(value, tuple):
-        return tuple([number if number == -1.0 else number * factor for number in value])
-    return value * factor if isinstance(value, float) and value != -1.0 else value
 
 
 def _geometry(geometry: Geometry, s: float) -> Geometry:

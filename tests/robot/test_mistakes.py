@@ -33,3 +33,30 @@ def test_sizes_are_more_than_zero_and_whole_numbers_are_sizes() -> None:
 def test_an_axis_of_two_numbers_is_an_error_that_names_three() -> None:
     with arm().edit() as e, pytest.raises(hx.EditError, match=r"joint 'elbow': axis is of the type tuple\[float, float, float\]"):
         e.joints["elbow"].axis = (1, 2)  # type: ignore[assignment]
+
+
+def test_a_path_is_no_part_and_the_message_names_what_loads_it() -> None:
+    with pytest.raises(hx.EditError, match=r"a part is a Robot, found 'hand.xml'; give hymeko_x.load\('hand.xml'\)"):
+        arm().attach("hand.xml", at="flange")  # type: ignore[arg-type]
+    with pytest.raises(hx.EditError, match="a part is a Robot, found 3"):
+        hx.compose((arm(), 3))  # type: ignore[type-var]
+
+
+@pytest.mark.parametrize(
+    ("tensor", "message"),
+    [
+        ((1, 1, 5, 0, 0, 0), "no body can have the inertia tensor of body 'fore': of 1, 1, 5 the last exceeds the sum of the others"),
+        ((1, 1, 1, 2, 0, 0), "the inertia tensor of body 'fore' is not positive definite: its principal moments are -1, 1, 3"),
+    ],
+)
+def test_a_tensor_that_no_body_can_have_is_an_error(tensor: tuple[float, ...], message: str) -> None:
+    with arm().edit() as e:
+        with pytest.raises(hx.EditError, match=message):
+            e.bodies["fore"].tensor = tensor  # type: ignore[assignment]
+        with pytest.raises(hx.EditError, match="of body 'new'"):
+            e.add_body("new", on="fore", mass=1, tensor=(1, 1, 5, 0, 0, 0))
+        assert "new" not in e.bodies
+    assert e.robot == arm()
+    with arm().edit() as e:
+        e.bodies["fore"].tensor = (0, 0, 0, 0, 0, 0)  # a point
+        e.bodies["upper"].tensor = (1, 1, 2, 0, 0, 0)  # a disc

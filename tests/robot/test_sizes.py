@@ -96,3 +96,62 @@ def test_a_pose_between_two_points_can_be_moved() -> None:
     with robot.edit() as e:
         e.frames["rod"].pose = e.frames["rod"].pose @ hx.Pose((1, 0, 0))
     assert e.robot.to_mujoco().site("rod").pos.tolist() != [0, 0, 0.5]
+
+
+PILE = """<mujoco><option timestep="1e-3" solver="Newton" tolerance="1e-15" iterations="200"/>
+  <default>{classes}<geom condim="6" friction="0.7 0.02 0.01" solimp="0.8 0.95 0.02" margin="0.01"/></default>
+  <worldbody><geom name="floor" type="plane" size="5 5 .1"/>
+    <body name="box" pos="0 0 0.095" euler="3 2 0"><freejoint name="fly"/><geom name="box" type="box" size=".1 .1 .1" gap="0.002"/>
+      <body name="arm" pos="0 0 .1"><joint name="turn" axis="0 1 0" range="-10 10" limited="true" solimplimit=".8 .95 .1" margin="0.05"/>
+        <geom type="capsule" size=".02 .1" pos="0 0 .12"/>
+        <body name="slider" pos="0 0 .2"><joint name="slide" type="slide" axis="0 0 1" range="-.01 .01" limited="true" {own}/>
+          <geom name="tip" size=".05" contype="0" conaffinity="0"/><site name="end"/></body></body></body>
+    <body name="ball" pos="0.05 0 0.7"><joint name="hold" type="slide" axis="1 0 0"/>
+      <geom name="ball" size=".05" contype="0" conaffinity="0"/></body>
+  </worldbody>
+  <contact><pair geom1="tip" geom2="ball" margin=".5" gap="0.01" condim="6" friction="0.7 0.6 0.02 0.01 0.01"
+    solimp=".8 .95 .02"/></contact>
+  <tendon><spatial name="rope" range="0 0.1" limited="true" solimplimit=".8 .95 .2" margin=".02">
+    <site site="end"/><site site="peg"/></spatial></tendon>
+  <equality><connect body1="ball" body2="slider" anchor="0 0 0.1" solimp=".8 .95 .3"/></equality>
+</mujoco>""".replace('<geom name="floor"', '<site name="peg" pos="0.3 0 0.6"/><geom name="floor"')
+OF_JOINTS = 'solimplimit=".8 .95 .02" margin="0.01"'
+
+
+@pytest.mark.parametrize("size", [2.0, 0.3])
+@pytest.mark.parametrize("where", ["element", "class"])
+def test_constraints_of_a_scaled_robot_push_as_those_of_its_original(where: str, size: float) -> None:
+    """Margins, gaps, the widths of impedances, and torsional and rolling friction are lengths."""
+    own, classes = (OF_JOINTS, "") if where == "element" else ("", f"<joint {OF_JOINTS}/>")
+    robot = hx.loads(PILE.format(own=own, classes=classes), "mjcf")
+    small, big = robot.to_mujoco(), robot.scaled(size).to_mujoco()
+    for name in ("geom_gap", "geom_margin", "pair_gap", "pair_margin", "tendon_margin"):
+        assert getattr(big, name) == pytest.approx(size * getattr(small, name)), name
+    assert (big.jnt_solimp[1, 2], big.jnt_solimp[2, 2]) == (small.jnt_solimp[1, 2], pytest.approx(size * 0.02))
+    assert big.jnt_margin[1:3] == pytest.approx([small.jnt_margin[1], size * 0.01])
+    big.opt.gravity[:] *= size
+    turns = np.array((size, size, size, 1, 1, 1, 1, size, size))
+    before, after = mujoco.MjData(small), mujoco.MjData(big)
+    lengths = np.array((size, size, size, 1, 1, 1, 1, 1, size, size))
+    before.qpos[7:9] = (0.2, 0.015)
+    before.qvel[:] = (0.1, 0.2, -0.1, 0.3, 0.2, 0.1, 1.0, 0.1, 0.2)
+    after.qpos, after.qvel = before.qpos * lengths, before.qvel * turns
+    mujoco.mj_forward(small, before)
+    mujoco.mj_forward(big, after)
+    assert (after.nefc, after.ncon) == (before.nefc, before.ncon)
+    kinds = ("EQUALITY", "LIMIT_JOINT", "LIMIT_TENDON", "CONTACT_PYRAMIDAL")
+    assert {*before.efc_type.tolist()} == {int(getattr(mujoco.mjtConstraint, f"mjCNSTR_{kind}")) for kind in kinds}
+    assert {*before.efc_id[before.efc_type == 3].tolist()} == {1, 2}  # of the hinge and of the slide
+    assert np.abs(before.qfrc_constraint).max() > 1
+    assert after.qacc / turns == pytest.approx(before.qacc, rel=1e-6, abs=1e-6 * np.abs(before.qacc).max())
+
+
+def test_what_a_whole_gives_as_lengths_and_masses_grows() -> None:
+    text = """<mujoco><compiler settotalmass="3"/><statistic extent="2" meanmass="4"/>
+      <asset><hfield name="hills" nrow="2" ncol="2" size="1 2 3 0.1"/></asset>
+      <worldbody><geom type="hfield" hfield="hills"/><body><joint/><geom size=".1"/></body></worldbody></mujoco>"""
+    robot = hx.loads(text, "mjcf")
+    model = robot.scaled(2).to_mujoco()
+    assert model.hfield_size.tolist() == [[2, 4, 6, 0.2]]
+    assert (model.stat.extent, model.stat.meanmass, sum(model.body_mass)) == (4, 32, pytest.approx(24))
+    assert hx.diff(robot.scaled(2).scaled(0.5), robot) == ()

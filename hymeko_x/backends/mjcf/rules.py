@@ -146,8 +146,8 @@ _NUMBERS = re.compile(r'\b(qpos|qvel|ctrl)="([^"]*)"')
 def _drop_stale_keyframes(mechanism: Mechanism, context: Context) -> Mechanism:
     """Keyframes are kept verbatim, and fit as long as no joint or actuator is added or removed; MuJoCo refuses others."""
     own = mechanism.extras.get(ROOT, ())
-    if any("<flex" in extra.text or "<composite" in extra.text for extra in own) or not any(is_keyframes(extra) for extra in own):
-        return mechanism  # soft bodies have coordinates of their own, which are not counted here
+    if _has_soft_bodies(mechanism) or not any(is_keyframes(extra) for extra in own):
+        return mechanism
     kinds = [dof.kind for view in mechanism.joints.values() for dof in view.joint.dofs]
     counts = {
         "qpos": sum(_COORDINATES.get(kind, (1, 1))[0] for kind in kinds),
@@ -163,6 +163,16 @@ def _drop_stale_keyframes(mechanism: Mechanism, context: Context) -> Mechanism:
         left = "it is" if len(names) == 1 else "they are"
         context.report.warn(codes.NOT_SAID, f"{which} {reason}; {left} left out", origin)
     return mechanism if kept == own else replace(mechanism, extras={**mechanism.extras, ROOT: kept})
+
+
+def _has_soft_bodies(mechanism: Mechanism) -> bool:
+    """Whether there are bodies that have coordinates of their own, which no joint of the robot counts."""
+    return any("<flex" in extra.text or "<composite" in extra.text for extra in mechanism.extras.get(ROOT, ()))
+
+
+def _write_poses_as_keyframes(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """Named poses are keyframes, where joints count all coordinates."""
+    return mechanism if _has_soft_bodies(mechanism) else with_poses(mechanism)
 
 
 def _with_fitting_keys(extra: Extra, counts: dict[str, int], stale: dict[str, list[str]]) -> Extra:
@@ -201,5 +211,6 @@ NATIVE: tuple[Rule, ...] = (
     name_dofs_once,
     _let_inertials_count,
     _drop_stale_keyframes,
+    _write_poses_as_keyframes,  # behind the rule that reports those that do not fit
 )
 """The rules for what came from MJCF: none changes what MuJoCo reads, all hold for what was edited in another format since."""

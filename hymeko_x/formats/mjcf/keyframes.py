@@ -13,7 +13,7 @@ from hymeko_x.formats.mjcf import NAME
 from hymeko_x.formats.mjcf.tree import parse_text, verbatim
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism, end_of, numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Stance
-from hymeko_x.ir.values import compose, inverse, numbers_text
+from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, numbers_text
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
@@ -49,12 +49,13 @@ def keys_of(mechanism: Mechanism) -> list[Key]:
 
 
 def poses(mechanism: Mechanism) -> list[tuple[str, Mapping[Id, tuple[float, ...]]]]:
-    """The name of each keyframe with coordinates, and these by joint, in rad or m."""
-    found = [
-        (key.attributes.get("name", ""), {of: numbers for (word, of), numbers in key.numbers.items() if word == "qpos"})
-        for key in keys_of(mechanism)
-    ]
-    return [(name, values) for name, values in found if values]
+    """The name of each keyframe with coordinates, and these by joint, in rad or m; of a free joint from its own frame."""
+    found: list[tuple[str, Mapping[Id, tuple[float, ...]]]] = []
+    for key in keys_of(mechanism):
+        values = {of: _in_joint(mechanism, of, numbers) for (word, of), numbers in key.numbers.items() if word == "qpos"}
+        if values:
+            found.append((key.attributes.get("name", ""), values))
+    return found
 
 
 def with_keys(mechanism: Mechanism, keys: Sequence[Key]) -> Mechanism:
@@ -77,9 +78,38 @@ def with_poses(mechanism: Mechanism) -> Mechanism:
     for _, _, arcs in mechanism.edges(Stance):
         pose = end_of(arcs, 1)
         if pose is not None and pose.name not in known:
-            values = {("qpos", arc.target): numbers_weight(arc) for arc in arcs if arc.sign == 0}
-            new.append(Key({"name": pose.name}, {(of, key): found for (of, key), found in values.items() if widths.get(key) == len(found)}))
+            values = {arc.target: numbers_weight(arc) for arc in arcs if arc.sign == 0}
+            fitting = {key: found for key, found in values.items() if widths.get(key) == len(found)}
+            new.append(Key({"name": pose.name}, {("qpos", key): _in_world(mechanism, key, found) for key, found in fitting.items()}))
     return with_keys(mechanism, [*own, *new]) if new else mechanism
+
+
+def _in_joint(mechanism: Mechanism, key: Id, numbers: tuple[float, ...]) -> tuple[float, ...]:
+    """MuJoCo's coordinates of a joint as those of the mechanism: of a free joint in its frame in the parent, and not in the world."""
+    view = mechanism.joints[key]
+    if not _is_turned(view):
+        return numbers
+    found = compose(inverse(view.parent_pose), compose(_pose_of(numbers), view.child_pose))
+    return (*found.xyz, *found.quat)
+
+
+def _in_world(mechanism: Mechanism, key: Id, numbers: tuple[float, ...]) -> tuple[float, ...]:
+    """The inverse of :func:`_in_joint`."""
+    view = mechanism.joints[key]
+    if not _is_turned(view):
+        return numbers
+    found = compose(view.parent_pose, compose(_pose_of(numbers), inverse(view.child_pose)))
+    return (*found.xyz, *found.quat)
+
+
+def _is_turned(view: JointView) -> bool:
+    is_free = [dof.kind for dof in view.joint.dofs] == [DofKind.FREE]
+    return is_free and (view.parent_pose, view.child_pose) != (IDENTITY, IDENTITY)
+
+
+def _pose_of(numbers: tuple[float, ...]) -> Pose:
+    x, y, z, *quat = numbers
+    return Pose.from_quat((quat[0], quat[1], quat[2], quat[3]), (x, y, z))
 
 
 def is_keyframes(extra: Extra) -> bool:
