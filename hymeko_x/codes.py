@@ -157,7 +157,7 @@ NOT_URDF = Code(
     "the xacro file does not expand to URDF",
     "xacro is used for URDF robots, but also for SDF worlds, SRDF and fragments of Gazebo. Only what expands to URDF is a robot that can be read as xacro.",
 )
-XACRO_SAID = Code("HX056", "the xacro library said something", "A warning or message of the xacro library, or of the file itself, at the element that caused it.")
+LIBRARY_MESSAGE = Code("HX056", "a library has a message about the file", "A warning of the library that reads the file (xacro, USD), or a message of the file itself, at its place where that is known.")
 ENVIRONMENT_CLOSED = Code(
     "HX057",
     "a file asks for an environment variable",

@@ -27,6 +27,14 @@ _HIGHEST_POWER = 4
 _SCALAR = (DofKind.HINGE, DofKind.SLIDE)
 
 
+def drop_inactive_couplings(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Couplings that a program can switch on later are left out of formats in which a follower always follows."""
+    gone = [key for key, coupling, _ in mechanism.edges(Coupling) if not coupling.active]
+    for key in gone:
+        context.report.warn(codes.NOT_SAID, f"{key} is not active; it is left out", mechanism.origin(key), element=str(key))
+    return mechanism.replace(without=gone)
+
+
 def make_couplings_scalar(mechanism: Mechanism, context: Context) -> Mechanism:
     """Couplings that cannot be a polynomial of one scalar dof are left out; so are those that lead nowhere.
 

@@ -152,6 +152,12 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
             "3: warning[HX022]: a <transmission> has no name; it is called 'transmission'",
         ],
     ),
+    "two transmissions of one name": (
+        robot(LINK + '\n<transmission name="t"/>\n<transmission name="t"/>'),
+        [
+            "4: warning[HX023]: there are two <transmission> called 't' (the other one: robot.urdf:3); this one is called 't#2'",
+        ],
+    ),
     "two links of one name": (
         robot(LINK + "\n" + LINK),
         [

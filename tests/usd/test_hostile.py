@@ -43,7 +43,7 @@ def test_a_stage_with_flipped_bits_is_read_or_refused() -> None:
         assert outcome(bytes(data)) in ("read", codes.CANNOT_READ.id)
 
 
-@pytest.mark.unread("HX040", "HX045")
+@pytest.mark.unread("HX040", "HX045", "HX056")
 def test_a_layer_that_is_its_own_sublayer_or_payload_ends() -> None:
     text = HEADER.replace("(\n", "(\n    subLayers = [@robot.usda@]\n", 1) + 'def "robot" (\n    payload = @robot.usda@</robot>\n)\n{\n}\n'
     assert outcome(text.encode(), "robot.usda", {"robot.usda": text}) in ("read", codes.CANNOT_READ.id)

@@ -130,7 +130,7 @@ def test_confined_reading_leaves_the_folder_by_no_way(folder: Folder) -> None:
         refused = read_or_refusal(folder.source("inside/robots/r.xacro", confine=inside), report)
         assert refused in (codes.INCLUDE_NOT_FOUND, None)
         assert (refused is None) == ("*" in text)
-        assert all(said.code == codes.XACRO_SAID for said in report)
+        assert all(diagnostic.code == codes.LIBRARY_MESSAGE for diagnostic in report)
 
 
 def read_or_refusal(source: Source, report: Report) -> object:

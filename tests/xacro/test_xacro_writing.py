@@ -140,7 +140,7 @@ def test_whatever_urdf_can_say_expands_to_it(mechanism: Mechanism) -> None:
 
 @given(mechanisms(), st.builds(Options, st.sampled_from([None, "fixed", "free"]), st.sampled_from([None, "motor", "position"])))
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-@pytest.mark.unread("HX101", "HX102")
+@pytest.mark.unread("HX101", "HX102", "HX104")
 def test_every_legal_mechanism_expands_to_its_urdf(mechanism: Mechanism, options: Options) -> None:
     check(legalize(choose(replace(mechanism, extras={}), options, Report()), "xacro", Report()))
 

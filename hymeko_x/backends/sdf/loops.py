@@ -66,6 +66,9 @@ class _Closer:
 
     def close(self, key: Id, loop: Loop, arcs: tuple[RobotArc, ...]) -> None:
         """Rewrite one closure."""
+        if not loop.active:
+            self._leave_out(key, "is not active")
+            return
         if len(arcs) != 2 or loop.kind not in ("connect", "weld", "joint") or words.default_type(Joint(loop.dofs)) is None:
             self._leave_out(key, "is no joint of SDF")
             return

@@ -21,7 +21,7 @@ from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Body, Camera, Dof, DofKind, Frame, Joint, Light, Material, Mount, Shape
 from hymeko_x.ir.values import ZERO, Pose, compose, quat_about, scaled
 from hymeko_x.rewrite.chains import chain_dofs
-from hymeko_x.rewrite.couplings import make_couplings_scalar
+from hymeko_x.rewrite.couplings import drop_inactive_couplings, make_couplings_scalar
 from hymeko_x.rewrite.efforts import limit_efforts_by_actuators
 from hymeko_x.rewrite.inertia import fill_tensors, give_every_body_mass, make_tensors_physical
 from hymeko_x.rewrite.joints import lower_inner_free_joints
@@ -195,6 +195,7 @@ RULES: tuple[Rule, ...] = (
     move_anchors_into_frames,
     chain_joints,
     unless_from_sdf(close_loops_by_joints),
+    drop_inactive_couplings,
     make_couplings_scalar,
     unless_from_sdf(widen_cameras),
     unless_from_sdf(limit_colours),

@@ -13,6 +13,7 @@ from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Capsule, Dof, DofKind, Ellipsoid, Plane
 from hymeko_x.ir.values import IDENTITY, plane_axes
 from hymeko_x.rewrite.chains import chain_dofs
+from hymeko_x.rewrite.couplings import drop_inactive_couplings
 from hymeko_x.rewrite.efforts import limit_efforts_by_actuators
 from hymeko_x.rewrite.inertia import fill_tensors
 from hymeko_x.rewrite.joints import expand_screws
@@ -77,6 +78,7 @@ RULES: tuple[Rule, ...] = (
     make_names_usable,
     leave_virtual_joint_out,
     drop_engine_shapes,
+    drop_inactive_couplings,
     fill_tensors,
     expand_screws,
     limit_efforts_by_actuators,

@@ -131,16 +131,16 @@ class UrdfBuilder(Builder):
 def take_name(node: Node, kind: str, known: dict[str, Id], builder: UrdfBuilder) -> Id:
     """The id of a link, joint or transmission from its name; a name that is missing or taken is reported."""
     name = node.take("name")
+    report = builder.warn if known is builder.drives else builder.error  # nothing refers to a transmission
     if not name:
         problem = f"has no name; it is called '{node.tag}'" if name is None else "has an empty name"
-        report = builder.warn if known is builder.drives else builder.error
         report(codes.BAD_NAME, node, f"a <{node.tag}> {problem}")
     key = builder.own(node, kind, node.tag if name is None else name)
     first = known.setdefault(key.name if name is None else name, key)
     if name is not None and first != key:
         other = builder.origins[first]
         message = f"there are two <{node.tag}> called '{name}' (the other one: {other}); this one is called '{key.name}'"
-        builder.error(codes.DUPLICATE_NAME, node, message)
+        report(codes.DUPLICATE_NAME, node, message)
     return key
 
 

@@ -14,6 +14,7 @@ from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.frontends.usd.layers import _UP, _gather, _words, check_paths, check_size, drop_unknown_types, lay_out
+from hymeko_x.frontends.usd.messages import warnings_reported
 from hymeko_x.frontends.usd.prims import read_layer
 
 if TYPE_CHECKING:
@@ -51,42 +52,43 @@ def open_scene(source: Source, report: Report) -> Iterator[Scene]:
     Raises: Refusal with HX001 (USD cannot read it, which it may find out only in the block), HX007 (too large).
     """
     try:
-        with _opened(source, report) as scene:
-            yield scene
+        with tempfile.TemporaryDirectory(prefix="hymeko-usd-", ignore_cleanup_errors=True) as folder:
+            base = os.path.join(folder, *["d"] * _UP)
+            os.makedirs(base)
+            main = lay_out(source, base)
+            with warnings_reported(source, main, report), _opened(main, base, source, report) as scene:
+                yield scene
     except (Tf.ErrorException, UnicodeDecodeError) as error:
         raise refuse(codes.CANNOT_READ, f"the file is damaged: {_words(error)}", Origin(source.name)) from error
 
 
 @contextmanager
-def _opened(source: Source, report: Report) -> Iterator[Scene]:
-    with tempfile.TemporaryDirectory(prefix="hymeko-usd-", ignore_cleanup_errors=True) as folder:
-        base = os.path.join(folder, *["d"] * _UP)
-        os.makedirs(base)
-        main = lay_out(source, base)
-        layers = _gather(main, base, source, report)
-        found = _read_plain(layers, source, report)
-        if found is None:
-            check_size(layers, MOST_PRIMS, source)
-            drop_unknown_types(layers, source, report)
-        stage = _composed(main, source)
-        flat = stage.GetRootLayer()
-        if found is None:
-            _choose_variants(stage, source)
-            _expand_instances(stage, source)
-            flat = stage.Flatten(False)
-            found = _read_layer(flat, source)
-        _report_composition_errors(stage, base, source, report)
-        found.stage = stage
-        metres = _unit("metersPerUnit", UsdGeom.GetStageMetersPerUnit(stage), 0.01, source, report)
-        kilograms = _unit("kilogramsPerUnit", UsdPhysics.GetStageKilogramsPerUnit(stage), 1.0, source, report)
-        up = UsdGeom.GetStageUpAxis(stage)
-        turn = Gf.Rotation(Gf.Vec3d(1, 0, 0), 90.0 if up == UsdGeom.Tokens.y else 0.0)
-        world = Gf.Matrix4d().SetScale(metres) * Gf.Matrix4d().SetRotate(turn)
-        try:
-            yield Scene(stage, found.prims, world, kilograms, metres, base, flat)
-        finally:
-            found.close()
-            del stage, layers, flat
+def _opened(main: str, base: str, source: Source, report: Report) -> Iterator[Scene]:
+    """The stage whose first layer was laid out at ``main``, in the folder ``base``."""
+    layers = _gather(main, base, source, report)
+    found = _read_plain(layers, source, report)
+    if found is None:
+        check_size(layers, MOST_PRIMS, source)
+        drop_unknown_types(layers, source, report)
+    stage = _composed(main, source)
+    flat = stage.GetRootLayer()
+    if found is None:
+        _choose_variants(stage, source)
+        _expand_instances(stage, source)
+        flat = stage.Flatten(False)
+        found = _read_layer(flat, source)
+    _report_composition_errors(stage, base, source, report)
+    found.stage = stage
+    metres = _unit("metersPerUnit", UsdGeom.GetStageMetersPerUnit(stage), 0.01, source, report)
+    kilograms = _unit("kilogramsPerUnit", UsdPhysics.GetStageKilogramsPerUnit(stage), 1.0, source, report)
+    up = UsdGeom.GetStageUpAxis(stage)
+    turn = Gf.Rotation(Gf.Vec3d(1, 0, 0), 90.0 if up == UsdGeom.Tokens.y else 0.0)
+    world = Gf.Matrix4d().SetScale(metres) * Gf.Matrix4d().SetRotate(turn)
+    try:
+        yield Scene(stage, found.prims, world, kilograms, metres, base, flat)
+    finally:
+        found.close()
+        del stage, layers, flat
 
 
 def _unit(name: str, value: float, usual: float, source: Source, report: Report) -> float:

@@ -120,8 +120,8 @@ def _of_xacro(text: str, origin: Origin) -> Diagnostic:
     for severity in (Severity.WARNING, Severity.ERROR):
         start = f"{severity.value}: "
         if text.startswith(start):
-            return Diagnostic(codes.XACRO_SAID, severity, f"xacro: {_short(text.removeprefix(start))}", origin)
-    return Diagnostic(codes.XACRO_SAID, Severity.NOTE, f"xacro: {_short(text)}", origin)
+            return Diagnostic(codes.LIBRARY_MESSAGE, severity, f"xacro: {_short(text.removeprefix(start))}", origin)
+    return Diagnostic(codes.LIBRARY_MESSAGE, Severity.NOTE, f"xacro: {_short(text)}", origin)
 
 
 def _origin(facts: Message, source: str) -> Origin:
