@@ -43,7 +43,7 @@ def dynamics(
     Raises: Refusal (HX4xx) that names the element for which there are none.
     """
     from hymeko_x.diagnostics import Report
-    from hymeko_x.dynamics.lumped import Lumped
+    from hymeko_x.dynamics.lumped import checked
     from hymeko_x.dynamics.multibody import multibody_of
     from hymeko_x.ir.holder import mechanism_of
     from hymeko_x.networks.assembly import has_network, network_of
@@ -52,7 +52,7 @@ def dynamics(
 
     mechanism = mechanism_of(robot)
     if has_network(mechanism):
-        return Lumped(network_of(mechanism))
+        return checked(network_of(mechanism), mechanism)
     whole = name_poses(_with_inertias(mechanism, files, report), Context(Report()))
     found = multibody_of(whole, base=base, gravity=gravity, actuated=inputs == "actuators")
     if report is not None:

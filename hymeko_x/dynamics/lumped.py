@@ -12,15 +12,19 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics import forms
 from hymeko_x.dynamics.equations import system_of
 from hymeko_x.dynamics.linear import StateSpace, is_linear, linearize
-from hymeko_x.dynamics.signals import constant, signal_of, total
+from hymeko_x.dynamics.signals import KINDS, constant, signal_of, total
 from hymeko_x.dynamics.simulation import Response, simulate
 from hymeko_x.dynamics.system import input_of
+from hymeko_x.networks.network import CONTROLLERS, gains_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.dynamics.signals import Signal
     from hymeko_x.dynamics.system import System, Variable
+    from hymeko_x.ir.ids import Id
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.parts import Parameters
     from hymeko_x.networks.network import Network
 
 
@@ -88,8 +92,26 @@ class Lumped(Struct, frozen=True, dict=True):
             signals[variable.name] = total([constant(variable.value), signal])
         return signals
 
-    def _ports(self) -> list[tuple[object, tuple[tuple[str, float | str | tuple[float, ...]], ...]]]:
+    def _ports(self) -> list[tuple[Id, Parameters]]:
         """Every port with the parameters of its signal: all that are no gains."""
-        moved = [(key, port.parameters) for key, port in self.network.moved.items()]
-        pushing = [(element.id, element.part.parameters) for _, element in self.network.ports]  # type: ignore[union-attr]
-        return [(key, tuple(item for item in parameters if item[0] not in ("p", "i", "d"))) for key, parameters in moved + pushing]
+        return [(key, tuple([item for item in port.parameters if item[0] not in gains_of(port)])) for key, port in self.network.all_ports]
+
+
+def checked(network: Network, mechanism: Mechanism) -> Lumped:
+    """The dynamics of a mechanism's network whose ports have gains and signals that are known.
+
+    Raises: Refusal (HX406) for a field that a controller does not have, HX407 for one that no signal has.
+    """
+    found = Lumped(network)
+    for key, port in network.all_ports:
+        gains = gains_of(port)
+        known = {*gains, "signal", "noise", *[name for _, defaults in KINDS.values() for name in defaults]}
+        wrong = next((name for name, _ in port.parameters if name not in known), None)
+        if wrong is not None and port.kind in CONTROLLERS:
+            own = ", ".join((*gains, "value"))
+            hint = "the gains of a feedback are the weight of its arc with the role sense" if not gains else ""
+            message = f"{key}: a {port.kind} has no '{wrong}'; it has {own} and a signal"
+            raise refuse(codes.BAD_NETWORK, message, mechanism.origin(key), element=str(key), hint=hint)
+    for key, parameters in found._ports():
+        signal_of(parameters, 0.0, str(key))
+    return found

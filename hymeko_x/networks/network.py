@@ -21,7 +21,13 @@ if TYPE_CHECKING:
 
 MOTIONS = ("ground", "position", "flow")
 """Ports that move, or hold, an end of an edge; the others push along it."""
-EFFORTS = ("effort", "pid", "feedback")
+CONTROLLERS = ("pid", "feedback")
+EFFORTS = ("effort", *CONTROLLERS)
+
+
+def gains_of(port: lumped.Port) -> tuple[str, ...]:
+    """The names of the parameters of a port that are no signal."""
+    return ("p", "i", "d") if port.kind == "pid" else ()
 
 
 class Element(Struct, frozen=True):
@@ -64,3 +70,9 @@ class Network(Struct, frozen=True):
         """The ports that push, with their edges."""
         for branch in self.branches:
             yield from ((branch, element) for element in branch.elements if isinstance(element.part, lumped.Port))
+
+    @property
+    def all_ports(self) -> Iterator[tuple[Id, lumped.Port]]:
+        """The ports that move an end, and those that push."""
+        yield from self.moved.items()
+        yield from ((element.id, element.part) for _, element in self.ports if isinstance(element.part, lumped.Port))

@@ -236,6 +236,13 @@ REFUSED = {
     'a : mass { mass 1 } w : port { type "magic" } k : spring { k 1 } @e : constitutive { + w - a ~ k }': "HX406]: port 'w' is a port of",
     'a : mass { mass 1 } w : ground {} k : spring { k 1 law "k*y" } @e : constitutive { + w - a ~ k }': "HX406]: the law of spring 'k'",
     'a : mass { mass 1 } w : ground {} k : spring { k 1 law "x.real" } @e : constitutive { + w - a ~ k }': "has 'x.real'; it is arithmetic",
+    "a : mass { mass 1 } w : ground {} c : pid { pp 3 } @e : constitutive { + w - a ~ c }": (
+        "HX406]: port 'c': a pid has no 'pp'; it has p, i, d, value and a signal"
+    ),
+    "a : mass { mass 1 } w : ground {} c : feedback { p 3 } @e : constitutive { + w - a ~ c }": "HX406]: port 'c': a feedback has no 'p'",
+    'a : mass { mass 1 } w : ground {} f : force { signal "step" ampitude 3 } @e : constitutive { + w - a ~ f }': (
+        "HX407]: port 'f': a step has no 'ampitude'; it has amplitude, start"
+    ),
     "k : spring { k 1 } w : ground {} @e : constitutive { + w ~ k }": "HX400]: net: nothing in the network has a mass",
 }
 

@@ -74,3 +74,11 @@ def test_each_part_takes_its_own_keyframes_along() -> None:
     assert [rest.to_mujoco().key(0).name, rest.to_mujoco().nkey] == ["home", 1]
     assert [back.to_mujoco().key(0).name, back.to_mujoco().nkey] == ["open", 1]
     assert back.to_mujoco().key("open").qpos.tolist() == [0.01, 0.02]
+
+
+def test_a_part_takes_along_what_only_its_format_has() -> None:
+    hand = hx.loads(HAND.replace("</mujoco>", '<custom><numeric name="grasp" data="1 2"/></custom></mujoco>'), "mjcf")
+    whole = arm().attach(hand, at="flange", prefix="hand/")
+    rest, back = whole.detach("hand/")
+    assert [found.to_mujoco().nnumeric for found in (whole, rest, back)] == [1, 0, 1]
+    assert back.to_mujoco().numeric("grasp").data.tolist() == [1, 2]
