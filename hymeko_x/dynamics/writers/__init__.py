@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x import codes
-from hymeko_x.diagnostics import refuse
-
 if TYPE_CHECKING:
     from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.multibody import Multibody
@@ -19,16 +16,16 @@ LINEAR = ("octave", "simulink")
 def written(dynamics: Lumped | Multibody, language: str, *, at: str = "") -> bytes:
     """The equations as a file in a language of :data:`LANGUAGES`; those of :data:`LINEAR` are linear about ``at``.
 
-    Raises: Refusal (HX407) for an operating point that is not known, HX408 for formulas of closed loops, which would fill books.
+    Formulas of closed loops, whose forces follow from linear equations, are written in steps.
+
+    Raises: Refusal (HX407) for an operating point that is not known.
     """
     from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.writers import code, fmu, matlab, modelica
 
     system = dynamics.system
-    if language == "sympy" and not isinstance(dynamics, Lumped) and dynamics.closures:
-        loop = dynamics.closures[0].id
-        message = f"{loop} is closed by forces that follow from linear equations; their formulas would be too long"
-        raise refuse(codes.NO_FORM, message, element=str(loop), hint="--to python or casadi")
+    if language == "sympy":
+        return code.write_sympy(system, in_steps=not isinstance(dynamics, Lumped) and bool(dynamics.closures)).encode()
     if language == "fmu":
         return fmu.write_fmu(system)
     if language in LINEAR:
@@ -36,7 +33,6 @@ def written(dynamics: Lumped | Multibody, language: str, *, at: str = "") -> byt
         return {"octave": matlab.write_octave, "simulink": matlab.write_simulink}[language](system, space).encode()
     write = {
         "python": code.write_python,
-        "sympy": code.write_sympy,
         "casadi": code.write_casadi,
         "c": code.write_c,
         "modelica": modelica.write_modelica,

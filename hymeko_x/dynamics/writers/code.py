@@ -78,10 +78,10 @@ def step(name, value):
 """
 
 
-def write_sympy(system: System) -> str:
+def write_sympy(system: System, *, in_steps: bool = False) -> str:
     """A Python module with the rates and outputs as sympy matrices in the symbols x0, u0, p0, ...; numbers are exact fractions.
 
-    Long formulas are written step by step, as ``sympy.cse`` gives them.
+    Long formulas, and all of them if ``in_steps``, are written step by step, as ``sympy.cse`` gives them.
     """
     import sympy
 
@@ -95,7 +95,7 @@ def write_sympy(system: System) -> str:
     for letter, group in zip("xup", groups, strict=True):
         names = ", ".join(map(str, group))
         lines.append(f'{letter} = ({names},) = symbols("{letter}:{len(group)}", real=True)' if group else f"{letter} = ()")
-    if len(steps.assignments) > _LONG:
+    if in_steps or len(steps.assignments) > _LONG:
         lines += _STEPS.splitlines() + [f'{target} = step("{target}", {text})' for target, text in steps.assignments]
         lines += [f"rates = Matrix([{', '.join(steps.rates)}])", f"outputs = Matrix([{', '.join(steps.outputs)}])"]
         return "\n".join(lines) + "\n"
