@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import Struct
 from msgspec.structs import replace
 
-from hymeko_x.verify.checks.pair import shown
+from hymeko_x.verify.checks.pair import both_shown
 from hymeko_x.verify.spatial import angle_between
 from hymeko_x.verify.verdict import Check, Finding
 
@@ -146,4 +146,4 @@ def _with_places(pair: Pair, check: Check, peaks: Peaks) -> Check:
     row = slice(int(peaks.rows[first]), int(peaks.rows[first]) + 1)
     i, j = pair.match.bodies[1:][first]
     places = pair.forward_a.poses(pair.q_a[row])[0, i, :3, 3], pair.forward_b.poses(pair.q_b[row])[0, j, :3, 3]
-    return replace(check, values=(shown(places[0]), shown(places[1])))
+    return replace(check, values=both_shown(*places))

@@ -146,18 +146,24 @@ class Differences:
         if not self._rows:
             return []
         difference, allowed, at, ours, theirs = max(self._rows, key=lambda row: row[0] / max(row[1], 1e-300))
-        values = None if ours is None or difference == 0 else (shown(ours), shown(theirs))
+        values = None if ours is None or difference == 0 else both_shown(ours, theirs)
         findings = tuple(_finding(*row) for row in self._rows if not row[0] <= row[1])
         return [Check(self.quantity, self.unit, difference, at if difference > 0 else "", allowed, values, findings)]
 
 
 def _finding(difference: float, _: float, at: str, ours: object, theirs: object) -> Finding:
-    return Finding(at, difference, None if ours is None else (shown(ours), shown(theirs)))
+    return Finding(at, difference, None if ours is None else both_shown(ours, theirs))
 
 
-def shown(value: object) -> str:
-    """A number, an interval, a vector or a symmetric tensor in a few digits."""
-    numbers = np.asarray(value, dtype=np.float64)
+def both_shown(ours: object, theirs: object) -> tuple[str, str]:
+    """Two values in a few digits; a number that is rounding beside the largest of them is 0."""
+    a, b = np.asarray(ours, dtype=np.float64), np.asarray(theirs, dtype=np.float64)
+    rounding = RELATIVE * max(np.abs(value[np.isfinite(value)]).max(initial=0.0) for value in (a, b))
+    return _shown(np.where(np.abs(a) <= rounding, 0.0, a)), _shown(np.where(np.abs(b) <= rounding, 0.0, b))
+
+
+def _shown(numbers: Array) -> str:
+    """A number, an interval, a vector or a symmetric tensor."""
     if numbers.shape == (3, 3):
         numbers = numbers[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
     text = " ".join(f"{number:.6g}" for number in numbers.ravel())
