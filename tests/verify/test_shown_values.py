@@ -13,6 +13,7 @@ def test_rounding_beside_the_largest_number_of_both_values_is_printed_as_zero() 
         "[0 0 0.201079]",
     )
     assert both_shown(-1.69181, -3.46945e-18) == ("-1.69181", "0")
+    assert both_shown(1.03, 1e-9) == ("1.03", "1e-09")
     assert both_shown(-3e-18, 2e-18) == ("-3e-18", "2e-18")
 
 

@@ -34,6 +34,9 @@ _SAME_PLACEMENT = 1e-6
 MOST_NAMED = 5
 """So many findings a check names; it counts the rest."""
 
+ROUNDING = 1e-11
+"""Of the largest number beside it: computed numbers below have other digits on each processor. Authors write 1e-9 kg for no mass."""
+
 MOST_SHOWN = 2
 """So many elements a gap names."""
 
@@ -158,7 +161,7 @@ def _finding(difference: float, _: float, at: str, ours: object, theirs: object)
 def both_shown(ours: object, theirs: object) -> tuple[str, str]:
     """Two values in a few digits; a number that is rounding beside the largest of them is 0."""
     a, b = np.asarray(ours, dtype=np.float64), np.asarray(theirs, dtype=np.float64)
-    rounding = RELATIVE * max(np.abs(value[np.isfinite(value)]).max(initial=0.0) for value in (a, b))
+    rounding = ROUNDING * max(np.abs(value[np.isfinite(value)]).max(initial=0.0) for value in (a, b))
     return _shown(np.where(np.abs(a) <= rounding, 0.0, a)), _shown(np.where(np.abs(b) <= rounding, 0.0, b))
 
 
