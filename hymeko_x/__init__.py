@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from hymeko_x.robot import EditError, Robot, compose
     from hymeko_x.robot.units import deg, mm
     from hymeko_x.verify import verify
+    from hymeko_x.version import __version__ as __version__
 
 __all__ = [
     "Box",
@@ -65,6 +66,7 @@ _HOMES = {
     "diff": "hymeko_x.compare.diff",
     "dynamics": "hymeko_x.dynamics",
     "verify": "hymeko_x.verify",
+    "__version__": "hymeko_x.version",
     **dict.fromkeys(("Id", "Mechanism"), "hymeko_x.ir.mechanism"),
     **dict.fromkeys(("EditError", "Robot", "compose"), "hymeko_x.robot"),
     **dict.fromkeys(("deg", "mm"), "hymeko_x.robot.units"),
@@ -74,10 +76,6 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    if name == "__version__":
-        from importlib.metadata import version
-
-        return version("hymeko-x")
     if name not in _HOMES:
         raise AttributeError(f"module 'hymeko_x' has no attribute '{name}'")
     return getattr(import_module(_HOMES[name]), name)

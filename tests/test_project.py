@@ -40,7 +40,9 @@ def test_the_console_script_and_the_typing_marker_are_declared() -> None:
 
 
 def test_the_version_is_the_same_everywhere_and_that_of_the_tag() -> None:
-    version = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+    assert (project["project"]["dynamic"], project["tool"]["hatch"]["version"]["path"]) == (["version"], "hymeko_x/version.py")
+    version = hymeko_x.__version__
     assert f"version: {version}\n" in (ROOT / "CITATION.cff").read_text("utf-8")
     done = subprocess.run(["git", "tag", "--points-at", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False)
     tags = [tag for tag in done.stdout.split() if re.fullmatch(r"v\d+\.\d+\.\d+", tag)]

@@ -64,6 +64,22 @@ def test_text_formats_need_the_core_alone(folder: Path) -> None:
         assert "HX011" not in done.stderr
 
 
+SLOW_TO_LOAD = ("ast", "dataclasses", "difflib", "email", "hashlib", "importlib.metadata", "inspect", "lark", "lxml", "socket", "tempfile")
+"""Modules that take milliseconds to load, and that no conversion of a sound text needs: together more than the conversion itself."""
+
+
+def test_a_conversion_loads_no_module_that_it_has_no_use_for(folder: Path) -> None:
+    program = f"""
+import sys, msgspec  # which loads some of them where typing_extensions is installed
+before = {{*sys.modules}}
+from hymeko_x.cli import main
+code = main(["convert", "arm.urdf", "arm.xml"])
+print(code, [name for name in {SLOW_TO_LOAD!r} if name in sys.modules and name not in before])
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+    assert done.stdout == "0 []\n", done.stderr
+
+
 ADVICE = {
     "agree": ("", "verify"),
     "attach": ("arm.urdf arm.urdf --at tip -o two.urdf", None),

@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.cli import exits
+from hymeko_x.version import __version__
 
 if TYPE_CHECKING:
     import argparse
@@ -161,10 +162,5 @@ def _unknown_verb(word: str) -> int:
 
 
 def _print_version() -> int:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        print(f"hymeko-x {version('hymeko-x')}")
-    except PackageNotFoundError:
-        print("hymeko-x (running from a checkout that is not installed)")
+    print(f"hymeko-x {__version__}")
     return exits.DONE

@@ -5,13 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 import re
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, NoReturn
 
 from hymeko_x.cli.exits import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
 COLORS = ("auto", "always", "never")
 _UNKNOWN = "unrecognized arguments: "
@@ -32,16 +31,16 @@ class Parser(argparse.ArgumentParser):
         if invalid is None:
             return message.removeprefix("the following ")
         choices = re.findall(r"[\w.-]+", invalid["choices"])
-        near = get_close_matches(invalid["word"], choices, 1)
-        meant = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(choices)}"
+        near = _nearest(invalid["word"], choices)
+        meant = f"did you mean '{near}'?" if near else f"known: {', '.join(choices)}"
         return f"{invalid['of']}: there is no '{invalid['word']}'; {meant}"
 
     def _unknown(self, words: list[str]) -> str:
         option = next((word.partition("=")[0] for word in words if word.startswith("-")), None)
         if option is None:
             return f"there are more files than it takes: {' '.join(words)}"
-        near = get_close_matches(option, list(self._options()), 1)
-        return f"there is no option '{option}'" + (f"; did you mean '{near[0]}'?" if near else "")
+        near = _nearest(option, self._options())
+        return f"there is no option '{option}'" + (f"; did you mean '{near}'?" if near else "")
 
     def _options(self) -> Iterator[str]:
         """Every option of this parser and of those of its actions."""
@@ -50,6 +49,13 @@ class Parser(argparse.ArgumentParser):
             if isinstance(action, argparse._SubParsersAction):
                 for parser in action.choices.values():
                     yield from parser._options()
+
+
+def _nearest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that was probably meant."""
+    from difflib import get_close_matches
+
+    return next(iter(get_close_matches(word, list(known), 1)), None)
 
 
 def count(text: str) -> int:

@@ -10,7 +10,6 @@ import os
 import re
 import sys
 from contextlib import redirect_stdout
-from difflib import get_close_matches
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,7 +18,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.corpus.catalog import WheelPackage
 
@@ -60,8 +59,8 @@ def _described(name: str) -> Located:
         hint = f"'{name}' looks like a name of {_LIBRARY}: pip install {_LIBRARY}"
         raise refuse(codes.CANNOT_READ, f"there is no file '{name}'", hint=hint)
     if find_spec(f"{_LIBRARY}.{name}") is None:
-        near = get_close_matches(name, list(descriptions()), 3)
-        hint = f"did you mean {' or '.join(near)}?" if near else "`hymeko-x corpus search WORD` lists names"
+        near = _near(name, descriptions())
+        hint = f"did you mean {near}?" if near else "`hymeko-x corpus search WORD` lists names"
         raise refuse(codes.CANNOT_READ, f"neither a file nor {_LIBRARY} has the name '{name}'", hint=hint)
     try:
         with redirect_stdout(sys.stderr):  # it tells there that it clones
@@ -73,6 +72,13 @@ def _described(name: str) -> Located:
     if path is None:
         raise refuse(codes.CANNOT_READ, f"'{name}' of {_LIBRARY} is no robot that can be read")
     return Located(path, dict(getattr(module, "XACRO_ARGS", {})) if not hasattr(module, "URDF_PATH") else {})
+
+
+def _near(name: str, known: Iterable[str]) -> str:
+    """Names that were probably meant, joined by ``or``."""
+    from difflib import get_close_matches
+
+    return " or ".join(get_close_matches(name, list(known), 3))
 
 
 def descriptions() -> Iterator[str]:
@@ -104,8 +110,8 @@ def _fetched(package: WheelPackage, name: str) -> str:
     robots = catalogued(package)
     path = robots.get(name) or next((path for path in robots.values() if path == name), None)
     if path is None:
-        near = get_close_matches(name, list(robots), 3)
-        hint = f"did you mean {' or '.join(near)}?" if near else f"`hymeko-x corpus search {package.name}` lists its robots"
+        near = _near(name, robots)
+        hint = f"did you mean {near}?" if near else f"`hymeko-x corpus search {package.name}` lists its robots"
         raise refuse(codes.CANNOT_READ, f"{package.name} has no robot '{name}'", hint=hint)
     root = cache.cache_root(os.environ)
     if not cache.is_fetched(package, root):

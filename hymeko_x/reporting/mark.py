@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.version import __version__
 
 if TYPE_CHECKING:
     from hymeko_x.formats import Format
@@ -31,10 +31,7 @@ def _text(source: str) -> str:
     """What the comment says. A name that no comment of XML can hold is left out; text without a file has none."""
     name = PurePath(source.replace("\\", "/")).name
     is_usable = name.isprintable() and "--" not in name and not name.startswith("<")
-    try:
-        program = f"made by hymeko-x {version('hymeko-x')}"
-    except PackageNotFoundError:
-        program = "made by hymeko-x 0"
+    program = f"made by hymeko-x {__version__}"
     return f"{program} from {name}" if name and is_usable else program
 
 

@@ -7,7 +7,6 @@ name of the mesh.
 from __future__ import annotations
 
 import posixpath
-from hashlib import sha256
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
@@ -56,7 +55,7 @@ def _line(key: Id, part: object, contents: PackageFiles) -> Iterator[tuple[str, 
     elif isinstance(part, Mesh | Texture) and part.uri is not None:
         name = contents.find(part.uri)
         if name is not None and (name in contents.package.files or name in contents.package.copies):
-            yield posixpath.normpath(part.uri), sha256(contents.read(name)).hexdigest()
+            yield posixpath.normpath(part.uri), _sha256(contents.read(name))
 
 
 def _digest_of_points(mesh: Mesh) -> str:
@@ -65,7 +64,13 @@ def _digest_of_points(mesh: Mesh) -> str:
 
     tables = (mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces, *((mesh.normals, mesh.normalfaces) if mesh.normals else ()))
     numbers = (np.asarray(rows, np.float32).tobytes() for rows in tables)
-    return sha256(b"|".join(numbers)).hexdigest()
+    return _sha256(b"|".join(numbers))
+
+
+def _sha256(data: bytes) -> str:
+    from hashlib import sha256
+
+    return sha256(data).hexdigest()
 
 
 def with_edited_files(mechanism: Mechanism, originals: Mapping[str, str], files: Files, report: Report) -> Mechanism:
@@ -87,7 +92,7 @@ def _report_parts(digests: Mapping[str, str], files: Files, report: Report) -> N
     """Warn of edited files that are parts of an original, in which no part can be edited alone."""
     for name, digest in digests.items():
         found = read_file(files, name.removeprefix(_PART)) if name.startswith(_PART) else None
-        if found is not None and sha256(found[1]).hexdigest() != digest:
+        if found is not None and _sha256(found[1]) != digest:
             words = "was edited since the file was written; it is a part of an original, which is kept whole and has no such edit"
             report.warn(codes.RESIDUE_SUPERSEDED, f"'{name.removeprefix(_PART)}' {words}")
 
@@ -128,5 +133,5 @@ def _edited(key: Id, part: object, mechanism: Mechanism, digests: Mapping[str, s
     uri = mechanism.places.get(getattr(part, "uri", "")) if stored is None else _uri(stored)
     name = posixpath.normpath(uri or "")
     found = read_file(files, uri) if uri and name in digests else None
-    if found is not None and sha256(found[1]).hexdigest() != digests[name]:
+    if found is not None and _sha256(found[1]) != digests[name]:
         yield name

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Mesh, Texture
     from hymeko_x.rewrite.context import Context
 
-_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_NOT_XML = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def usable_name(name: str) -> str:

@@ -18,7 +18,6 @@ from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Actuator, Body, Dof, DofKind, Drive, Inertial, Joint, World
 from hymeko_x.ir.values import ZERO, Tensor, X, Z
-from hymeko_x.networks.assembly import has_network, network_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -70,6 +69,8 @@ def robot_of_network(mechanism: Mechanism, format: Format, report: Report) -> Me
 
 def _network(mechanism: Mechanism) -> tuple[Network | None, str]:
     """The network of a mechanism, or why it has none."""
+    from hymeko_x.networks.assembly import has_network, network_of  # robots need nothing of it
+
     if not has_network(mechanism):
         return None, "it has no masses"
     try:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import re
 import time
-from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
@@ -16,6 +15,7 @@ from hymeko_x.server import answers
 from hymeko_x.server.analysis import SEVERITIES, Analysis, analyse, path_of, unread
 from hymeko_x.server.renaming import rename_element
 from hymeko_x.server.workspace import Workspace
+from hymeko_x.version import __version__
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Diagnostic
@@ -31,7 +31,7 @@ class _Server(LanguageServer):
     """The server with what it knows of the open documents, by their uris."""
 
     def __init__(self) -> None:
-        super().__init__("hymeko-x", version("hymeko-x"))
+        super().__init__("hymeko-x", __version__)
         self.known: dict[str, Analysis] = {}
         self._took: dict[str, float] = {}
         self._waiting: dict[str, asyncio.TimerHandle] = {}

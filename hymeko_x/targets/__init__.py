@@ -6,7 +6,6 @@ belongs to the robot from then on. Adding a target means its rules in a file of 
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -80,6 +79,8 @@ def by_name(name: str) -> Target:
     known = {target.name: target for target in TARGETS}
     if name.lower() in known:
         return known[name.lower()]
+    from difflib import get_close_matches
+
     near = get_close_matches(name.lower(), known, 1)
     hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
     raise refuse(codes.UNKNOWN_TARGET, f"there is no target '{name}'; {hint}")

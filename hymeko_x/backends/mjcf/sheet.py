@@ -7,11 +7,11 @@ one is the simple case: angles in radians, every element named, and the classes 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 from xml.parsers.expat import ExpatError
 
 import msgspec
+from msgspec import Struct, field
 
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import Classes, merge
@@ -44,8 +44,7 @@ _SIGNED_ZERO = re.compile(r"(?<!\S)-0(?!\S)")
 _REFERENCES = frozenset(("mesh", "material", "texture"))
 
 
-@dataclass(slots=True)
-class MjcfSheet:
+class MjcfSheet(Struct):
     """The document, its settings and its classes. ``kept``: the sections and comments at top level that are written as they were."""
 
     mechanism: Mechanism
@@ -330,8 +329,7 @@ class FrameTag(msgspec.Struct, frozen=True):
     depth: int
 
 
-@dataclass(slots=True)
-class BodyTag:
+class BodyTag(Struct):
     """A body (or the world) that is being written: its element, the childclass in force in it, and its frames by number."""
 
     key: Id
