@@ -10,8 +10,9 @@ from hymeko_x.dynamics.assembly import assembled, reduction
 from hymeko_x.dynamics.couplings import independent
 from hymeko_x.dynamics.drives import remembering
 from hymeko_x.dynamics.linear import StateSpace
-from hymeko_x.dynamics.positions import moved
+from hymeko_x.dynamics.positions import moved, normal
 from hymeko_x.dynamics.system import Variable
+from hymeko_x.dynamics.tree import COORDINATES, reference
 from hymeko_x.dynamics.trees import activation
 from hymeko_x.ir import parts
 from hymeko_x.ir.kinematics import dof_at
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.floating[Any]]
 
 _ELSEWHERE = "--at joint=value,... linearises at a configuration that inputs hold"
-_WIDTHS = {DofKind.BALL: 4, DofKind.FREE: 7}
 _HELD = 1e-9
 """In m/s^2 or rad/s^2: accelerations up to which a point is an equilibrium."""
 
@@ -53,10 +53,11 @@ class OperatingPoint(NamedTuple):
         return max(map(abs, self.rates), default=0.0) <= _HELD
 
 
-def named_positions(found: Trees, words: str) -> dict[str, float]:
+def named_positions(found: Trees, words: str) -> dict[str, tuple[float, ...]]:
     """The positions that ``--at`` gives by the names of dofs: a named configuration of the file, or ``joint=value,joint=value``.
 
-    Of a configuration they are those of the independent dofs with one coordinate: followers follow, balls and free bodies are at rest.
+    Of a configuration they are those of the independent dofs: followers follow. Balls have a quaternion (w, x, y, z), free dofs a
+    position before one.
 
     Raises: Refusal (HX407) for words that are neither.
     """
@@ -64,18 +65,18 @@ def named_positions(found: Trees, words: str) -> dict[str, float]:
     configurations = {key.name: key for key, _ in mechanism.vertices(parts.PoseSet)}
     if words in configurations:
         numbers = _configuration(mechanism, configurations[words])
-        links = [link for link in independent(found.tree, found.followers) if link.coordinates == 1]
+        links = independent(found.tree, found.followers)
         return {link.name: numbers[link.joint, link.number] for link in links if (link.joint, link.number) in numbers}
     try:
-        return {name: float(value) for name, value in (pair.split("=") for pair in words.split(","))}
+        return {name: (float(value),) for name, value in (pair.split("=") for pair in words.split(","))}
     except ValueError as error:
         hint = f"named configurations of the file: {', '.join(configurations) or 'none'}; or joint=0.5,other=1 in rad and m"
         raise refuse(codes.BAD_SIGNAL, f"'{words}' is no configuration", hint=hint) from error
 
 
-def _configuration(mechanism: Mechanism, pose: Id) -> dict[tuple[Id, int], float]:
-    """The coordinates of a named configuration by joint and number of the dof, of dofs with one."""
-    found: dict[tuple[Id, int], float] = {}
+def _configuration(mechanism: Mechanism, pose: Id) -> dict[tuple[Id, int], tuple[float, ...]]:
+    """The coordinates of a named configuration by joint and number of the dof."""
+    found: dict[tuple[Id, int], tuple[float, ...]] = {}
     for _, _, arcs in mechanism.edges(parts.Stance):
         if not any(arc.target == pose for arc in arcs):
             continue
@@ -83,15 +84,16 @@ def _configuration(mechanism: Mechanism, pose: Id) -> dict[tuple[Id, int], float
             joint, numbers = mechanism.joints.get(arc.target), list(numbers_weight(arc))
             named = dof_at(mechanism.graph.edges, arc) if arc.role else None
             if named is not None and len(numbers) == 1:
-                found[arc.target, named[0]] = numbers.pop()
+                found[arc.target, named[0]] = (numbers.pop(),)
             for number, dof in enumerate(joint.joint.dofs if joint is not None else ()):
-                own = [numbers.pop(0) for _ in range(min(_WIDTHS.get(dof.kind, 1), len(numbers)))]
-                if len(own) == 1:
-                    found[arc.target, number] = own[0]
+                width = COORDINATES.get(dof.kind, 1)
+                if len(numbers) >= width:
+                    found[arc.target, number] = tuple(numbers[:width])
+                del numbers[:width]
     return found
 
 
-def operating_point(found: Trees, positions: Mapping[str, float], *, search: bool = False, keep: bool = True) -> OperatingPoint:
+def operating_point(found: Trees, positions: Mapping[str, tuple[float, ...]], *, search: bool = False, keep: bool = True) -> OperatingPoint:
     """The point at these positions (others at their reference); with ``search`` the equilibrium without inputs next to it.
 
     Loops are closed; joints with a position keep it if ``keep``.
@@ -133,24 +135,20 @@ def _controls(found: Trees, signals: list[float]) -> list[float]:
     return [0.0 if motor.law.lag == 0.0 else signal for motor, signal in zip(found.motors, signals, strict=True)]
 
 
-def start_of(found: Trees, positions: Mapping[str, float], *, keep: bool = True) -> list[float]:
+def start_of(found: Trees, positions: Mapping[str, tuple[float, ...]], *, keep: bool = True) -> list[float]:
     """The independent coordinates at these positions (others at their reference), with closed loops."""
     z = _positions(independent(found.tree, found.followers), positions)
     return assembled(found, z, positions if keep else ())
 
 
-def _positions(links: Sequence[Link], given: Mapping[str, float]) -> list[float]:
-    names = [link.name for link in links if link.coordinates == 1]
-    wrong = [name for name in given if name not in names]
+def _positions(links: Sequence[Link], given: Mapping[str, tuple[float, ...]]) -> list[float]:
+    widths = {link.name: link.coordinates for link in links}
+    wrong = [name for name, numbers in given.items() if widths.get(name) != len(numbers)]
     if wrong:
-        raise refuse(codes.BAD_SIGNAL, f"there is no independent joint '{wrong[0]}' with one coordinate; there are {', '.join(names)}")
-    z: list[float] = []
-    for link in links:
-        if link.coordinates == 1:
-            z.append(given.get(link.name, link.dof.ref))
-        else:
-            z += [0.0] * (link.coordinates - 4) + [1.0, 0.0, 0.0, 0.0]
-    return z
+        names = ", ".join(name for name, width in widths.items() if width == 1)
+        raise refuse(codes.BAD_SIGNAL, f"there is no independent joint '{wrong[0]}' with one coordinate; there are {names}")
+    z = [number for link in links for number in given.get(link.name, reference(link))]
+    return normal(links, z)
 
 
 def _equilibrium(trees: Trees, links: Sequence[Link], z: list[float], accelerations: Any) -> list[float]:

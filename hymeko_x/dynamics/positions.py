@@ -52,11 +52,11 @@ def nearest(
         if min(np.abs(step).max(), np.abs(phi).max()) <= _DONE:
             break
         step *= min(1.0, _LONGEST / float(np.abs(step).max()))
-        at = _normal(links, moved(links, at, step.tolist()))
+        at = normal(links, moved(links, at, step.tolist()))
     return at
 
 
-def _normal(links: Sequence[Link], z: Sequence[float]) -> list[float]:
+def normal(links: Sequence[Link], z: Sequence[float]) -> list[float]:
     """Positions with quaternions of unit length."""
     found: list[float] = []
     at = 0
@@ -65,6 +65,6 @@ def _normal(links: Sequence[Link], z: Sequence[float]) -> list[float]:
         at += link.coordinates
         if link.coordinates > 1:
             size = sum(value * value for value in own[-4:]) ** 0.5
-            own[-4:] = [value / size for value in own[-4:]]
+            own[-4:] = [value / size for value in own[-4:]] if size else [1.0, 0.0, 0.0, 0.0]
         found += own
     return found

@@ -81,10 +81,12 @@ class Tree(Struct, frozen=True, dict=True):
     @property
     def rest(self) -> list[float]:
         """The configuration in which every coordinate is at its reference."""
-        q: list[float] = []
-        for link in self.links:
-            q += [link.dof.ref] if link.coordinates == 1 else [0.0] * (link.coordinates - 4) + [1.0, 0.0, 0.0, 0.0]
-        return q
+        return [number for link in self.links for number in reference(link)]
+
+
+def reference(link: Link) -> tuple[float, ...]:
+    """The positions of a link at its reference."""
+    return (link.dof.ref,) if link.coordinates == 1 else (*[0.0] * (link.coordinates - 4), 1.0, 0.0, 0.0, 0.0)
 
 
 def frame_of(pose: Pose) -> Frame:
