@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.multibody import Multibody
-    from hymeko_x.ir import parts
     from hymeko_x.ir.holder import Holder
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files
@@ -64,8 +63,9 @@ def _report_left_out(found: Multibody, report: Report) -> None:
     """Warn (HX408) of every element that acts on a robot's motion and has no part in its equations."""
     from hymeko_x import codes
     from hymeko_x.dynamics.couplings import followers_of
-    from hymeko_x.dynamics.drives import cables_of, motors_of
+    from hymeko_x.dynamics.drives import motors_of
     from hymeko_x.dynamics.loops import closures_of
+    from hymeko_x.dynamics.passive import cables_of
     from hymeko_x.ir import parts
 
     robot, tree = found.mechanism, found.tree
@@ -73,19 +73,9 @@ def _report_left_out(found: Multibody, report: Report) -> None:
     words += [(key, f"{key} couples along a path, or by a polynomial of several coordinates") for key in followers_of(robot, tree)[1]]
     words += [(key, f"{key} {why}") for key, why in cables_of(robot, tree)[1]]
     words += [(key, f"{key} {why}") for key, why in (motors_of(robot, tree)[1] if found.motors is not None else [])]
-    words += [(key, f"{key} has {what}") for key, tendon, _ in robot.edges(parts.Tendon) for what in _unmodelled(tendon)]
-    for key, joint, _ in robot.edges(parts.Joint):
-        if any(dof.friction for dof in joint.dofs):
-            words.append((key, f"{key} has Coulomb friction"))
-        if any(dof.stiffness and dof.kind is parts.DofKind.BALL for dof in joint.dofs):
-            words.append((key, f"{key} has a spring on a ball"))
+    words += [(key, f"{key} has an armature") for key, tendon, _ in robot.edges(parts.Tendon) if tendon.armature]
     for key, what in words:
         report.warn(codes.NO_FORM, f"{what}, which is not in the equations", robot.origin(key), element=str(key))
-
-
-def _unmodelled(tendon: parts.Tendon) -> list[str]:
-    """What a tendon does besides pulling as a spring and a damper."""
-    return ["Coulomb friction"] * bool(tendon.friction) + ["an armature"] * bool(tendon.armature)
 
 
 def _with_inertias(robot: Mechanism, files: Files | None, report: Report | None) -> Mechanism:

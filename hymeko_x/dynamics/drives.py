@@ -1,4 +1,4 @@
-"""Tendons and actuators: the springs and dampers of tendons, and what actuators do under their controls, by their laws."""
+"""Actuators: what they act along, and what they do under their controls, by their laws."""
 
 from __future__ import annotations
 
@@ -8,13 +8,12 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x.dynamics.laws import Law, damped, law_of
-from hymeko_x.dynamics.lines import Line, Stretch, geared, path_of, push_of, seats_of, stretches, terms_of
+from hymeko_x.dynamics.lines import Line, act, geared, line_of, push_of, seats_of, stretches, terms_of
 from hymeko_x.dynamics.numbers import add, dot, factorize, floats, solve, times
 from hymeko_x.dynamics.recursion import Constants, mass_matrix
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind
-from hymeko_x.ir.tendons import FIXED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -29,16 +28,6 @@ if TYPE_CHECKING:
     """Elements that are not in the equations, each with the reason."""
 
 
-class Cable(Struct, frozen=True):
-    """A tendon that pulls: a damper along it, and a spring that does nothing at lengths between the two of ``rest``."""
-
-    id: Id
-    line: Line
-    stiffness: float
-    damping: float
-    rest: tuple[float, float]
-
-
 class Motor(Struct, frozen=True):
     """An actuator that acts along a line by its law; ``unit`` is that of its control, "" where it follows from nothing."""
 
@@ -49,43 +38,6 @@ class Motor(Struct, frozen=True):
 
 
 # ---- from the mechanism ------------------------------------------------------------------------------------------------------------
-
-
-def cables_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Cable, ...], Left]:
-    """The tendons that pull, and those that do and have no equations here."""
-    seats = seats_of(mechanism, tree)
-    found, left = [], []
-    for key, tendon, arcs in mechanism.edges(parts.Tendon):
-        if not tendon.stiffness and not tendon.damping:
-            continue
-        line = line_of(mechanism, tree, tendon, arcs, seats)
-        if isinstance(line, str):
-            left.append((key, line))
-        else:
-            found.append(Cable(key, line, tendon.stiffness, tendon.damping, _rest(tendon, line, tree)))
-    return tuple(found), left
-
-
-def line_of(mechanism: Mechanism, tree: Tree, tendon: parts.Tendon, arcs: Sequence[RobotArc], seats: Seats) -> Line | str:
-    """The line of a tendon; as text the reason why there is none."""
-    if tendon.kind != FIXED:
-        return path_of(mechanism, arcs, seats)
-    terms = terms_of(mechanism, tree, arcs)
-    return "combines what is no coordinate of a joint" if terms is None else Line(terms)
-
-
-def _rest(tendon: parts.Tendon, line: Line, tree: Tree) -> tuple[float, float]:
-    """The lengths at rest: ``springlength``, else that at the rests of the joints' springs, as in MuJoCo."""
-    given = dict(tendon.parameters).get("springlength", -1.0)
-    ends = tuple(map(float, given if isinstance(given, tuple) else (given,)))
-    if set(ends) != {-1.0}:
-        return ends[0], ends[-1]
-    q = list(tree.rest)
-    for link in tree.links:
-        if link.coordinates == 1:
-            q[link.q] = link.dof.spring_ref
-    length = float(stretches([line], Constants(tree, floats()), q)[0].length)
-    return length, length
 
 
 def motors_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Motor, ...], Left]:
@@ -148,25 +100,6 @@ def _unit(actuator: parts.Actuator, line: Line, tree: Tree) -> str:
 # ---- forces ------------------------------------------------------------------------------------------------------------------------
 
 
-def pull_cables(forces: list[Number], cables: Sequence[Cable], constants: Constants, q: Sequence[Number], v: Sequence[Number]) -> None:
-    """Add what the springs and dampers of tendons do to the forces of all coordinates."""
-    numbers = constants.numbers
-    for cable, stretch in zip(cables, stretches([cable.line for cable in cables], constants, q), strict=True):
-        spring = times(numbers.exact(-cable.stiffness), elongation(cable, stretch.length, numbers))
-        _act(forces, stretch, add(spring, times(numbers.exact(-cable.damping), stretch.rate(v))))
-
-
-def elongation(cable: Cable, length: Number, numbers: Numbers) -> Number:
-    """How far the length (m or rad) is above or below those at rest."""
-    lower, upper = cable.rest
-    over = add(length, numbers.exact(-upper)) if upper else length
-    if lower == upper:
-        return over
-    under = add(length, numbers.exact(-lower)) if lower else length
-    size = numbers.functions["abs"]
-    return (over + size(over) + under - size(under)) / 2
-
-
 def drive(
     forces: list[Number],
     motors: Sequence[Motor],
@@ -181,12 +114,7 @@ def drive(
     for motor, signal, stretch in zip(motors, signals, found, strict=True):
         along = (1, stretch.length, stretch.rate(v))
         gain, bias = (dot([numbers.exact(x) if x else 0 for x in part], along) for part in (motor.law.gain, motor.law.bias))
-        _act(forces, stretch, add(times(gain, signal), bias))
-
-
-def _act(forces: list[Number], stretch: Stretch, force: Number) -> None:
-    for column, slope in stretch.row.items():
-        forces[column] = add(forces[column], times(slope, force))
+        act(forces, stretch, add(times(gain, signal), bias))
 
 
 # ---- states ------------------------------------------------------------------------------------------------------------------------

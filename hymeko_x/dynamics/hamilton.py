@@ -1,7 +1,7 @@
 """The port-Hamiltonian form of mechanisms: x = (q, p), H = p' M(q)^-1 p / 2 + V(q), x' = (J - R) dH/dx + G u, y = G' dH/dx.
 
 J = [[0, N], [-N', C]], where q' = N(q) v and C(p) turns the momenta of balls and free bodies with their own axes:
-p' = p x w of an angular momentum, and so on. R has the dampers, G the inputs. Energies are in J.
+p' = p x w of an angular momentum, and so on. R has the dampers and friction, G the inputs. Energies are in J.
 Closed loops phi(q) = 0 are one more port, through which no power flows: x' = (J - R) dH/dx + G u + B f, 0 = B' dH/dx, B = [[0], [A']] with
 the Jacobian A of phi over the independent velocities, and the forces f of the closures.
 Source: van der Schaft & Jeltsema, Port-Hamiltonian Systems Theory (2014), chapters 2 and 6.
@@ -17,9 +17,9 @@ from msgspec import Struct
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.couplings import expanded, independent
-from hymeko_x.dynamics.drives import elongation
 from hymeko_x.dynamics.lines import stretches
 from hymeko_x.dynamics.numbers import add, dot, factorize, graphs, solve, symbols, times
+from hymeko_x.dynamics.passive import resist, resistances, rubbing, spring_energy
 from hymeko_x.dynamics.recursion import Constants, mass_matrix
 from hymeko_x.dynamics.spatial import composed, minus, plus, scaled, skew, turned
 from hymeko_x.dynamics.system import Variable
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from hymeko_x.dynamics.couplings import Expanded
     from hymeko_x.dynamics.loops import Closing
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
     from hymeko_x.dynamics.spatial import Frame
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.floating[Any]]
 
 _ITERATIONS = 50
+_PARTS = (*(0.5**k for k in range(20)), 1.0)
+"""Of a step of Newton's method, which goes too far where friction changes its sign; the first that leads nearer is taken, or all of it."""
 _EXACT = 1e-12
 """Newton's last step, relative to the state."""
 _TINY = 1e-12
@@ -90,13 +93,20 @@ class MechanicalHamiltonian(Struct, frozen=True, dict=True):
         constants = Constants(found.tree, numbers, found.gravity)
         whole = expanded(found.tree, found.followers, q, [0] * len(p), numbers)
         mass = reduced(mass_matrix(constants, whole.q), whole)
-        resistance = reduced(_damping(found, constants, whole.q), whole)
+        rates = self._rates(mass, p, whole) if rubbing(found.tree, found.cables) else whole.v
+        resistance = reduced(_damping(found, constants, whole.q, rates), whole)
         driven = _driven(found, constants, whole.q)
         columns = [[dot(column, force) for column in zip(*whole.ratios, strict=True)] for force in driven]
         width = len(q) + len(p)
         r: Matrix = [[0] * width for _ in q] + [[*[0] * len(q), *row] for row in resistance]
         g: Matrix = [[0] * len(columns) for _ in q] + [[column[k] for column in columns] for k in range(len(p))]
         return Blocks(mass, _potential(found, constants, whole.q, numbers), _structure(links, q, p), r, g)
+
+    @staticmethod
+    def _rates(mass: Matrix, p: Sequence[Number], whole: Expanded) -> list[Number]:
+        """The velocities of all coordinates, on which friction depends."""
+        own = solve(factorize(mass), p)
+        return [dot(row, own) for row in whole.ratios]
 
     def closed(self, q: Sequence[Number], numbers: Numbers) -> Closing:
         """phi of the closed loops at q, and its Jacobian A over the independent velocities."""
@@ -188,18 +198,28 @@ class MechanicalHamiltonian(Struct, frozen=True, dict=True):
 
         width = len(x)
         after = np.append(guess, np.zeros(sum(closure.rows for closure in self.found.closures)))
+        now = self._missing(x, after, u, step)
         for _ in range(_ITERATIONS):
-            missing, slope, output, lost = (np.array(value, dtype=float) for value in self._step(x, after, u, step))
+            missing, slope, output, lost = now
             if not np.isfinite(slope).all():
                 break
             change = _solved(slope, missing[:, 0], is_square=len(after) == width)
-            after = after - change
-            if not np.isfinite(after).all():
+            if not np.isfinite(change).all():
                 break
             if np.abs(change[:width]).max() <= _EXACT * (1.0 + np.abs(after[:width]).max()):
-                return after[:width], output[:, 0], float(lost[0, 0])
+                return after[:width] - change[:width], output[:, 0], float(lost[0, 0])
+            for part in _PARTS:
+                now = self._missing(x, after - part * change, u, step)
+                if np.linalg.norm(now[0]) < np.linalg.norm(missing):
+                    break
+            after = after - part * change
         message = f"the step at {number * step:.6g} s has no solution; a shorter --step may have one"
         raise refuse(codes.SIMULATION_FAILED, message)
+
+    def _missing(self, x: Floats, after: Floats, u: Floats, step: float) -> list[Floats]:
+        import numpy as np
+
+        return [np.array(value, dtype=float) for value in self._step(x, after, u, step)]
 
 
 def _expressions(matrix: Matrix) -> Any:
@@ -227,8 +247,8 @@ def _momentum(velocity: Variable) -> Variable:
 
 
 def _potential(found: Trees, constants: Constants, q: Sequence[Number], numbers: Numbers) -> Number:
-    """The energy of weights, springs of joints and tendons, and of actuators that pull by position."""
-    energy: Number = 0
+    """The energy of springs and weights, and of actuators that pull by position."""
+    energy = spring_energy(constants, found.cables, q)
     world: list[Frame] = []
     frames = constants.link_frames(q)
     up = constants.pull.linear
@@ -236,12 +256,6 @@ def _potential(found: Trees, constants: Constants, q: Sequence[Number], numbers:
         world.append(composed(world[link.parent], frame) if link.parent >= 0 else frame)
         moment = plus(scaled(world[-1].position, inertia.mass), turned(world[-1].rotation, inertia.moment))
         energy = add(energy, dot(up, moment))
-        if link.dof.stiffness and link.coordinates == 1:
-            stretch = add(q[link.q], numbers.exact(-link.dof.spring_ref))
-            energy = add(energy, times(numbers.exact(link.dof.stiffness) / 2, times(stretch, stretch)))
-    for cable, along in zip(found.cables, stretches([cable.line for cable in found.cables], constants, q), strict=True):
-        stretch = elongation(cable, along.length, numbers)
-        energy = add(energy, times(numbers.exact(cable.stiffness) / 2, times(stretch, stretch)))
     motors = found.motors or ()
     for motor, along in zip(motors, stretches([motor.line for motor in motors], constants, q), strict=True):
         offset, slope = (numbers.exact(value) if value else 0 for value in motor.law.bias[:2])
@@ -249,20 +263,12 @@ def _potential(found: Trees, constants: Constants, q: Sequence[Number], numbers:
     return energy
 
 
-def _damping(found: Trees, constants: Constants, q: Sequence[Number]) -> Matrix:
-    """What resists velocities: the dampers of joints, tendons and actuators."""
-    count, numbers = found.tree.nv, constants.numbers
-    matrix: Matrix = [[0] * count for _ in range(count)]
-    for link in found.tree.links:
-        for k in range(link.v, link.v + link.velocities):
-            matrix[k][k] = numbers.exact(link.dof.damping) if link.dof.damping else 0
-    along = [(cable.line, cable.damping) for cable in found.cables if cable.damping]
-    along += [(motor.line, -motor.law.bias[2]) for motor in found.motors or () if motor.law.bias[2]]
-    rows = [stretch.row for stretch in stretches([line for line, _ in along], constants, q)]
-    for row, (_, damping) in zip(rows, along, strict=True):
-        for i, a in row.items():
-            for k, b in row.items():
-                matrix[i][k] = add(matrix[i][k], times(times(numbers.exact(damping), a), b))
+def _damping(found: Trees, constants: Constants, q: Sequence[Number], v: Sequence[Number]) -> Matrix:
+    """What resists velocities: dampers and friction of joints and tendons, and the dampers of actuators."""
+    matrix = resistances(constants, found.cables, q, v)
+    motors = [motor for motor in found.motors or () if motor.law.bias[2]]
+    for motor, stretch in zip(motors, stretches([motor.line for motor in motors], constants, q), strict=True):
+        resist(matrix, stretch.row, constants.numbers.exact(-motor.law.bias[2]))
     return matrix
 
 

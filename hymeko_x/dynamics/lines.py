@@ -19,7 +19,7 @@ from hymeko_x.dynamics.tree import frame_of
 from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Shape
-from hymeko_x.ir.tendons import PULLEY, WRAP
+from hymeko_x.ir.tendons import FIXED, PULLEY, WRAP
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from hymeko_x.dynamics.tree import Tree
     from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
+    from hymeko_x.ir.parts import Tendon
 
     Terms = tuple[tuple[int, float], ...]
     Seats = Mapping[Id, tuple[int, Frame]]
@@ -116,6 +117,14 @@ def path_of(mechanism: Mechanism, arcs: Sequence[RobotArc], seats: Seats) -> Lin
             spans.append((before, point, 1.0 / divisor))
         before = point
     return Line(spans=tuple(spans))
+
+
+def line_of(mechanism: Mechanism, tree: Tree, tendon: Tendon, arcs: Sequence[RobotArc], seats: Seats) -> Line | str:
+    """The line of a tendon; as text the reason why there is none."""
+    if tendon.kind != FIXED:
+        return path_of(mechanism, arcs, seats)
+    terms = terms_of(mechanism, tree, arcs)
+    return "combines what is no coordinate of a joint" if terms is None else Line(terms)
 
 
 def push_of(arc: RobotArc, seats: Seats) -> Line | str:
@@ -206,3 +215,9 @@ def _feel(row: dict[int, Number], link: int, until: int, wrench: Spatial, consta
             row[k] = add(row.get(k, 0), inner(column, wrench))
         wrench = up(frames[link], wrench)
         link = own.parent
+
+
+def act(forces: list[Number], stretch: Stretch, force: Number) -> None:
+    """Add a force along a line to the forces of all coordinates."""
+    for column, slope in stretch.row.items():
+        forces[column] = add(forces[column], times(slope, force))

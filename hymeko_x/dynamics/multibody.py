@@ -8,12 +8,13 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.assembly import reduction
 from hymeko_x.dynamics.couplings import expanded, followers_of, independent
-from hymeko_x.dynamics.drives import cables_of, motors_of, remembering
+from hymeko_x.dynamics.drives import motors_of, remembering
 from hymeko_x.dynamics.forms import SecondOrder
 from hymeko_x.dynamics.hamilton import MechanicalHamiltonian
 from hymeko_x.dynamics.loops import closing, closures_of
 from hymeko_x.dynamics.numbers import floats
 from hymeko_x.dynamics.operating import OperatingPoint, linearized, named_positions, operating_point, start_of, sympy_matrix
+from hymeko_x.dynamics.passive import cables_of
 from hymeko_x.dynamics.recursion import GRAVITY, mass_matrix
 from hymeko_x.dynamics.simulation import Response, simulate
 from hymeko_x.dynamics.system import Variable, input_of

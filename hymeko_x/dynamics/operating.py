@@ -188,7 +188,7 @@ def displacements(links: Sequence[Link]) -> tuple[Variable, ...]:
 def linearized(found: Trees, point: OperatingPoint) -> StateSpace:
     """The linear system at an operating point: states are displacements and velocities from there, inputs count from what holds it.
 
-    Derivatives are exact (casadi's). States of motors count from what they are there.
+    Derivatives are exact (casadi's). States of motors count from what they are there. Coulomb friction is left out.
     """
     import numpy as np
 
@@ -221,7 +221,7 @@ def _slopes(found: Trees, links: Sequence[Link], point: OperatingPoint) -> list[
     sizes = sum(link.velocities for link in links), len(point.activations), len(point.inputs)
     step, v, a, u = (casadi.SX.sym(name, size) for name, size in zip("dvau", (sizes[0], *sizes), strict=True))
     z = moved(links, point.positions, [step[k] for k in range(sizes[0])])
-    rates = found.graph(casadi.vertcat(*z, v, a), u)[len(z) :]
+    rates = found.frictionless.graph(casadi.vertcat(*z, v, a), u)[len(z) :]
     slopes = casadi.Function("f", [step, v, a, u], [casadi.jacobian(rates, part) for part in (step, v, a, u)] + [rates])
     values = slopes(np.zeros(sizes[0]), np.zeros(sizes[0]), np.array(point.activations), np.array(point.inputs))
     return [*(np.array(block, dtype=float).reshape(sum(sizes[:2]), -1) for block in values[:-1]), np.array(values[-1], dtype=float)[:, 0]]

@@ -13,6 +13,7 @@ from hymeko_x.dynamics.linear import complex_text
 from hymeko_x.dynamics.loops import STABILISATION
 from hymeko_x.dynamics.lumped import Lumped
 from hymeko_x.dynamics.operating import sympy_matrix
+from hymeko_x.dynamics.passive import rubbing
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from hymeko_x.dynamics.operating import OperatingPoint
     from hymeko_x.dynamics.system import Variable
 
+_NAMED = 3
+"""Elements that a fact names at most."""
 STYLES = ("text", "json", "latex", "markdown")
 
 
@@ -69,6 +72,7 @@ def page_of(dynamics: Lumped | Multibody, form: str, *, symbolic: bool = False, 
         "at": _where(dynamics, point.positions),
         "held by": _holding(dynamics, point),
         "equilibrium": "yes" if point.is_equilibrium else "no",
+        **_left_out(dynamics),
     }
     return Page(dynamics.tree.name, form, formula, variables, blocks, {**place, **_loops(dynamics, point.positions), **facts})
 
@@ -79,6 +83,13 @@ def _holding(dynamics: Multibody, point: OperatingPoint) -> str:
     variables = [*system.inputs, *system.states[len(system.states) - lagging :]]
     values = [*point.inputs, *point.activations]
     return _pairs({variable.name: value for variable, value in zip(variables, values, strict=True) if value})
+
+
+def _left_out(dynamics: Multibody) -> Mapping[str, str]:
+    """What a linear system cannot have."""
+    found = list(map(str, rubbing(dynamics.tree, dynamics.cables)))
+    more = [f"and {len(found) - _NAMED} others"] if len(found) > _NAMED else []
+    return {"without the Coulomb friction of": ", ".join([*found[:_NAMED], *more])} if found else {}
 
 
 def _loops(dynamics: Multibody, positions: Sequence[float]) -> Mapping[str, str]:
@@ -141,15 +152,19 @@ def _pairs(values: Mapping[str, float]) -> str:
 
 
 def _symbolic_page(dynamics: Multibody) -> Page:
-    names = {f"{variable.name}": variable for variable in dynamics.system.states}
-    found = dynamics.symbolic()
-    blocks: tuple[Block, ...] = (Block("M", found.mass), Block("h", found.bias), Block("g", found.gravity))
-    variables = {"states": tuple(names.values()), "inputs": dynamics.system.inputs}
-    formula = "M(q) v' + h(q, v) = tau, h(q, 0) = g(q)"
+    found, words = dynamics.symbolic(), "M(q) v' + h(q, v) = tau"
+    blocks = [Block("M", found.mass), Block("h", found.bias), Block("g", found.gravity)]
+    if dynamics.motors is not None:
+        words += "(q, v, a, u)" if any(v.name.endswith(".activation") for v in dynamics.system.states) else "(q, v, u)"
+        blocks.append(Block("tau", found.driven))
+    if any(found.passive):
+        words += " + d(q, v)"
+        blocks.append(Block("d", found.passive))
     if dynamics.closures:
-        formula = "M(q) v' + h(q, v) = tau + J(q)' f, phi(q) = 0, J = dphi/dq, h(q, 0) = g(q)"
-        blocks = (*blocks, *[Block(name, value) for name, value in zip(("phi", "J"), dynamics.symbolic_loops(), strict=True)])
-    return Page(dynamics.tree.name, "second-order", formula, variables, blocks, {})
+        words += " + J(q)' f, phi(q) = 0, J = dphi/dq"
+        blocks += [Block(name, value) for name, value in zip(("phi", "J"), dynamics.symbolic_loops(), strict=True)]
+    names = {"states": dynamics.system.states, "inputs": dynamics.system.inputs}
+    return Page(dynamics.tree.name, "second-order", f"{words}, h(q, 0) = g(q)", names, tuple(blocks), {})
 
 
 def _lumped_page(dynamics: Lumped, form: str, *, symbolic: bool) -> Page:

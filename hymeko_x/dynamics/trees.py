@@ -1,9 +1,9 @@
-"""The dynamics of trees: M(q) v' + C(q, v) v + g(q) = tau - damping - springs, in floats, symbols and expression graphs."""
+"""The dynamics of trees: M(q) v' + C(q, v) v + g(q) = tau - damping - friction - springs, in floats, symbols and expression graphs."""
 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -11,9 +11,10 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.couplings import Expanded, Follower, expanded, independent
-from hymeko_x.dynamics.drives import Cable, Motor, drive, pull_cables, remembering, signals_of, state_rates
+from hymeko_x.dynamics.drives import Motor, drive, remembering, signals_of, state_rates
 from hymeko_x.dynamics.loops import STABILISATION, Closing, Closure, closed_acceleration, closing
-from hymeko_x.dynamics.numbers import add, dot, factorize, floats, graphs, solve, symbols, times
+from hymeko_x.dynamics.numbers import add, dot, factorize, floats, graphs, solve, symbols
+from hymeko_x.dynamics.passive import Cable, passive_forces, rubbing, smooth
 from hymeko_x.dynamics.positions import nearest
 from hymeko_x.dynamics.recursion import GRAVITY, Constants, forward_dynamics, inverse_dynamics, mass_matrix
 from hymeko_x.dynamics.spatial import minus
@@ -34,13 +35,18 @@ if TYPE_CHECKING:
 
 
 class Formulas(NamedTuple):
-    """M(q), the bias C(q, v) v + g(q), and g(q), as sympy matrices in the symbols q1, q2, ... and v1, v2, ..."""
+    """M(q), the bias C(q, v) v + g(q), g(q), the forces of springs, dampers and friction, and those of actuators, as sympy matrices.
+
+    They are in the symbols q1, q2, ... and v1, v2, ..., the controls u1, u2, ... and states a1, a2, ... of actuators.
+    """
 
     q: tuple[Any, ...]
     v: tuple[Any, ...]
     mass: Any
     bias: Any
     gravity: Any
+    passive: Any
+    driven: Any
 
 
 class Trees(Struct, frozen=True, dict=True):
@@ -103,8 +109,16 @@ class Trees(Struct, frozen=True, dict=True):
         raise refuse(codes.SINGULAR_MASS, message, element=str(link.joint), hint="give what it moves an inertia tensor, or it an armature")
 
     def passive(self, q: Floats, v: Floats) -> Floats:
-        """The forces of damping and springs, at joints and of tendons."""
+        """The forces of springs, damping and Coulomb friction, at joints and of tendons."""
         return _array(passive_forces(self._constants, self.cables, _columns(q), _columns(v)), q)
+
+    @cached_property
+    def frictionless(self) -> Self:
+        """The same without Coulomb friction, which has no slope at rest."""
+        if not rubbing(self.tree, self.cables):
+            return self
+        tree, cables = smooth(self.tree, self.cables)
+        return replace(self, tree=tree, cables=cables)
 
     @cached_property
     def system(self) -> System:
@@ -131,26 +145,47 @@ class Trees(Struct, frozen=True, dict=True):
         return System(self.tree.name, tuple(states), inputs, outputs, (), rates, measured)
 
     def symbolic(self) -> Formulas:
-        """M(q), C(q, v) v + g(q) and g(q) of all coordinates as formulas: q, v and numbers as fractions. For a handful of dofs."""
+        """The equations of motion of the independent coordinates as formulas, numbers as fractions. For a handful of dofs."""
         import sympy
 
-        constants = Constants(self.tree, symbols(), self.gravity)
-        q = [sympy.Symbol(f"q{k}", real=True) for k in range(1, self.tree.nq + 1)]
-        v = [sympy.Symbol(f"v{k}", real=True) for k in range(1, self.tree.nv + 1)]
-        bias, gravity = (inverse_dynamics(constants, q, rate) for rate in (v, [0] * len(v)))
-        rows = (mass_matrix(constants, q), [[x] for x in bias], [[x] for x in gravity])
-        return Formulas(tuple(q), tuple(v), *(sympy.Matrix(found).applyfunc(sympy.trigsimp) for found in rows))
+        constants, (q, v) = Constants(self.tree, symbols(), self.gravity), self._symbols()
+        whole, still = (expanded(self.tree, self.followers, q, rates, symbols()) for rates in (v, [0] * len(v)))
+        mass = mass_matrix(constants, whole.q)
+        felt = [dot(row, whole.drift) for row in mass]
+        bias = [add(b, a) for b, a in zip(inverse_dynamics(constants, whole.q, whole.v), felt, strict=True)]
+        forces = [bias, inverse_dynamics(constants, still.q, still.v), passive_forces(constants, self.cables, whole.q, whole.v)]
+        forces.append(self._driving(constants, whole))
+        rows = [reduced(mass, whole), *[[[dot(column, force)] for column in zip(*whole.ratios, strict=True)] for force in forces]]
+        return Formulas(q, v, *(sympy.Matrix(found).applyfunc(sympy.trigsimp) for found in rows))
+
+    def _symbols(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """The symbols q1, q2, ... and v1, v2, ... of the independent coordinates."""
+        import sympy
+
+        links = independent(self.tree, self.followers)
+        q = sympy.symbols(f"q1:{1 + sum(link.coordinates for link in links)}", real=True)
+        return q, sympy.symbols(f"v1:{1 + sum(link.velocities for link in links)}", real=True)
+
+    def _driving(self, constants: Constants, whole: Expanded) -> list[Number]:
+        """What actuators do under the controls u1, u2, ... with their states a1, a2, ...; zero where the inputs are forces."""
+        import sympy
+
+        forces: list[Number] = [0] * self.tree.nv
+        if self.motors is not None:
+            states, controls = (sympy.symbols(f"{x}1:{1 + len(of)}") for x, of in (("a", remembering(self.motors)), ("u", self.motors)))
+            drive(forces, self.motors, signals_of(self.motors, states, controls), constants, whole.q, whole.v)
+        return forces
 
     def symbolic_loops(self) -> tuple[Any, Any]:
-        """The closure phi(q) and its Jacobian J(q) over all coordinates as formulas, without rows that are zero everywhere."""
+        """The closure phi(q) and its Jacobian J(q) over the independent coordinates as formulas, without rows that are zero everywhere."""
         import sympy
 
-        constants = Constants(self.tree, symbols(), self.gravity)
-        q = [sympy.Symbol(f"q{k}", real=True) for k in range(1, self.tree.nq + 1)]
-        closed = closing(self.closures, constants, q, [0] * self.tree.nv)
+        q, v = self._symbols()
+        whole = expanded(self.tree, self.followers, q, [0] * len(v), symbols())
+        closed = reduced_closing(self.closures, Constants(self.tree, symbols(), self.gravity), whole)
         rows = [(gap, row) for gap, row in zip(closed.gap, closed.slope, strict=True) if any(entry != 0 for entry in row)]
         phi = sympy.Matrix(len(rows), 1, [gap for gap, _ in rows])
-        slope = sympy.Matrix(len(rows), self.tree.nv, [entry for _, row in rows for entry in row])
+        slope = sympy.Matrix(len(rows), len(v), [entry for _, row in rows for entry in row])
         return phi.applyfunc(sympy.trigsimp), slope.applyfunc(sympy.trigsimp)
 
     @cached_property
@@ -232,21 +267,6 @@ def activation(motor: Motor) -> Variable:
     plain = motor.id.name.replace("_", r"\_")
     unit = motor.unit.removesuffix("/s") if not motor.law.lag else motor.unit
     return Variable(f"{motor.id.name}.activation", unit, rf"a_{{\mathrm{{{plain}}}}}", 0.0, str(motor.id))
-
-
-def passive_forces(constants: Constants, cables: Sequence[Cable], q: Sequence[Number], v: Sequence[Number]) -> list[Number]:
-    """The forces of dampers and springs at the dofs and of tendons. A spring of a ball is left out: no format agrees on its rest."""
-    tree, numbers = constants.tree, constants.numbers
-    forces: list[Number] = [0] * tree.nv
-    for link in tree.links:
-        for k in range(link.v, link.v + link.velocities):
-            if link.dof.damping:
-                forces[k] = add(forces[k], minus(times(numbers.exact(link.dof.damping), v[k])))
-        if link.dof.stiffness and link.coordinates == 1:
-            stretch = add(q[link.q], numbers.exact(-link.dof.spring_ref))
-            forces[link.v] = add(forces[link.v], minus(times(numbers.exact(link.dof.stiffness), stretch)))
-    pull_cables(forces, cables, constants, q, v)
-    return forces
 
 
 def _rates(found: Trees) -> Callable[[Sequence[Number], Sequence[Number], Sequence[Number], Numbers], list[Number]]:

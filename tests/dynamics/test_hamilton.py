@@ -21,6 +21,7 @@ from tests.dynamics.test_drives import MODEL as DRIVEN
 from tests.dynamics.test_lumped import LISTING
 from tests.dynamics.test_mechanisms import CART_POLE, DOUBLE, SPINNING
 from tests.dynamics.test_mechanisms import MODEL as BALL
+from tests.dynamics.test_passive import RUBBED, SPRUNG
 
 COUPLED = DOUBLE.replace("lower axis=-Y", "lower axis=-Y damping 0.2 stiffness 3 [0.1 0.5 0.3] mimic - shoulder")
 SYSTEMS = {
@@ -29,6 +30,8 @@ SYSTEMS = {
         load(DOUBLE.replace("lower axis=-Y", "lower axis=-Y damping 0.2 stiffness 3 [0.1 0.5 0.3] mimic - shoulder"))
     ),
     "ball": lambda: hx.dynamics(hx.loads(BALL, "mjcf").mechanism),
+    "sprung": lambda: hx.dynamics(hx.loads(SPRUNG, "mjcf")),
+    "rubbed": lambda: hx.dynamics(hx.loads(RUBBED, "mjcf")),
     "top": lambda: hx.dynamics(load(SPINNING)),
     "driven": lambda: hx.dynamics(hx.loads(DRIVEN, "mjcf").mechanism, inputs="actuators"),
 }

@@ -14,8 +14,8 @@ from msgspec.structs import replace
 import hymeko_x as hx
 from hymeko_x.corpus.catalog import development_files
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.dynamics.drives import drive, line_of, motors_of, pull_cables, remembering, signals_of
-from hymeko_x.dynamics.lines import Stretch, seats_of, stretches
+from hymeko_x.dynamics.drives import drive, motors_of, remembering, signals_of
+from hymeko_x.dynamics.lines import Stretch, line_of, seats_of, stretches
 from hymeko_x.dynamics.multibody import Multibody
 from hymeko_x.dynamics.numbers import floats, symbols
 from hymeko_x.dynamics.operating import linearized
@@ -117,13 +117,12 @@ def test_paths_and_actuators_with_states_are_as_in_mujoco(text: str) -> None:
 
 def test_tendons_along_paths_pull_as_in_mujoco() -> None:
     found, model = hx.dynamics(hx.loads(WHOLE, "mjcf").mechanism), mujoco.MjModel.from_xml_string(WHOLE)
-    model.jnt_stiffness[:], model.dof_damping[:] = 0, 0
     data, rng = mujoco.MjData(model), np.random.default_rng(4)
     mujoco.mj_integratePos(model, data.qpos, rng.normal(size=model.nv), 0.5)
     data.qvel = rng.normal(size=model.nv)
     mujoco.mj_forward(model, data)
-    turn, forces = turns(found, data), [0.0] * model.nv
-    pull_cables(forces, found.cables, Constants(found.tree, floats()), list(relative(found, data.qpos)), list(turn.T @ data.qvel))
+    turn = turns(found, data)
+    forces = found.passive(relative(found, data.qpos), turn.T @ data.qvel)
     np.testing.assert_allclose(forces, turn.T @ data.qfrc_passive, atol=1e-10 * np.abs(data.qfrc_passive).max())
     assert [cable.id.name for cable in found.cables] == ["straight", "slack", "block", "across"]
 
@@ -206,7 +205,6 @@ def test_paths_around_shapes_and_muscles_are_named() -> None:
         "tendon 'straight' wraps around the shape 'g', which is not in the equations",
         "actuator 'exact' pulls tendon 'straight', which wraps around the shape 'g', which is not in the equations",
         "actuator 'biceps' is of the kind 'muscle', which is not in the equations",
-        "tendon 'slack' has Coulomb friction, which is not in the equations",
         "tendon 'slack' has an armature, which is not in the equations",
     ]
 

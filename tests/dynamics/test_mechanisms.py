@@ -206,13 +206,12 @@ def test_what_is_not_in_the_equations_is_named() -> None:
     text = """r : robot { world {} a { mass 1 inertia [1 1 1] } b { mass 1 inertia [1 1 1] }
       @j { + world - a friction 0.2 } @k { + world - b }
       @shut : loop { type "joint" ~ a ~ b dof { moves=screw axis=X } } s : site { + a } t : site { + b }
-      @rope : tendon { ~ s ~ t stiffness 30 friction 0.1 } }"""
+      @rope : tendon { ~ s ~ t stiffness 30 armature 0.1 } }"""
     report = Report()
     hx.dynamics(load(text), report=report)
     assert [str(diagnostic).split(": ", 2)[1:] for diagnostic in report] == [
         ["warning[HX408]", "loop 'shut' is a loop of a kind, which is not in the equations"],
-        ["warning[HX408]", "tendon 'rope' has Coulomb friction, which is not in the equations"],
-        ["warning[HX408]", "joint 'j' has Coulomb friction, which is not in the equations"],
+        ["warning[HX408]", "tendon 'rope' has an armature, which is not in the equations"],
     ]
 
 
