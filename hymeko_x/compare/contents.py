@@ -95,19 +95,20 @@ def _of_meshes(key: Id, before: Submesh | None, after: Submesh | None, further: 
     if before is None or after is None:
         yield None
         return
-    from hymeko_x.meshes.change import ORDER, changes
+    from hymeko_x.meshes.change import changes, sorted_triangles
     from hymeko_x.meshes.reader import merged
 
     found: Sequence[Change] = changes(before, after)
     if found and (pieces := tuple(piece for piece in further if piece is not None)):
-        together = [change for change in changes(before, merged((after, *pieces))) if change.name != ORDER]
-        found = min(found, together, key=_triangles_changed)
+        found = min(found, changes(*map(sorted_triangles, (before, merged((after, *pieces))))), key=_triangles_changed)
     for name, was, now in found:
         yield Difference(key, f"content.{name}", _shown(was), _shown(now))
 
 
 def _triangles_changed(found: Sequence[Change]) -> float:
-    return abs(found[0].before - found[0].after) if found else -1.0
+    from hymeko_x.meshes.change import TRIANGLES
+
+    return sum(abs(change.before - change.after) for change in found if change.name == TRIANGLES) if found else -1.0
 
 
 def _shown(value: float) -> str:

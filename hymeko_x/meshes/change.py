@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from msgspec.structs import replace
 
 from hymeko_x.meshes.weld import joined
 
@@ -15,10 +16,14 @@ if TYPE_CHECKING:
 
     from hymeko_x.meshes.submesh import Submesh
 
+TRIANGLES = "triangles"
+"""The change of the number of triangles, which comes first where there is one."""
 ORDER = "order of triangles"
 """The change of meshes that have the same surface, but not triangle by triangle."""
 _ROUNDING = 1e-6
 """Lengths that differ by less, as a part of the largest extent, are the same in single precision."""
+_TURNED = 1e-4
+"""In rad: single precision, and files with five decimals, turn a normal by less."""
 _MOST_POINTS = 5_000
 """Of so many points of each mesh the distance to the other surface is taken, evenly through its points."""
 _NEAREST = 24
@@ -35,19 +40,28 @@ class Change(NamedTuple):
 
 
 def changes(before: Submesh, after: Submesh) -> tuple[Change, ...]:
-    """What differs from one mesh to the other, in m; nothing where they show the same triangles and texture coordinates.
+    """What differs from one mesh to the other, in m; nothing where they show the same triangles, texture coordinates and normals.
 
     The order of triangles does not count, nor whether points are shared; points of no triangle do where both meshes keep them.
     """
     if _are_same_triangles(before, after):
-        return tuple(_of_places(before, after))
-    found = [Change("triangles", len(before.faces), len(after.faces))]
+        return (*_of_places(before, after), *_of_normals(before, after))
+    found = [Change(TRIANGLES, len(before.faces), len(after.faces))]
     measures = (("volume", volume), ("area", area)) if is_closed(before) and is_closed(after) else (("area", area),)
     sizes = [Change(name, size(before), size(after)) for name, size in measures]
     found += [change for change in sizes if abs(change.before - change.after) > _ROUNDING * max(abs(change.before), abs(change.after))]
     found.append(Change("distance", 0.0, distance(before, after)))
     rows = [change for change in found if change.before != change.after]
-    return (*rows, *_of_places(before, after)) or (Change(ORDER, 0.0, 1.0),)
+    return (*rows, *_of_places(before, after), *_of_lost_normals(before, after)) or (Change(ORDER, 0.0, 1.0),)
+
+
+def sorted_triangles(part: Submesh) -> Submesh:
+    """The mesh with its triangles in the order of their corners in single precision, the same for the same triangles in any order."""
+    corners = part.points[part.faces].astype(np.float32).reshape(-1, 9)
+    order = np.lexsort(corners.T[::-1])
+    rows = (part.faces, part.corners, part.normal_corners)
+    faces, uv_rows, normal_rows = (None if table is None else table[order] for table in rows)
+    return replace(part, faces=faces, corners=uv_rows, normal_corners=normal_rows)
 
 
 def is_closed(part: Submesh) -> bool:
@@ -106,6 +120,31 @@ def _places(part: Submesh) -> NDArray[np.float64] | None:
     if part.uv is None:
         return None
     found: NDArray[np.float64] = part.uv[part.faces if part.corners is None else part.corners]
+    return found
+
+
+def _of_normals(a: Submesh, b: Submesh) -> Iterator[Change]:
+    """The change of the normals of a mesh that has some, by corner: that they are gone, or how far they are turned at most, in rad."""
+    yield from _of_lost_normals(a, b)
+    ours, theirs = _normals(a), _normals(b)
+    if ours is not None and theirs is not None:
+        chord = float(np.linalg.norm(ours - theirs, axis=2).max(initial=0.0))
+        if chord > _TURNED:
+            yield Change("turn of normals", 0.0, 2.0 * float(np.arcsin(min(chord / 2.0, 1.0))))
+
+
+def _of_lost_normals(a: Submesh, b: Submesh) -> Iterator[Change]:
+    if a.normals is not None and b.normals is None:
+        yield Change("normals", len(a.faces), 0)
+
+
+def _normals(part: Submesh) -> NDArray[np.float64] | None:
+    """The unit normals at the corners of the triangles (m, 3, 3); zero where there is no direction."""
+    if part.normals is None:
+        return None
+    lengths = np.linalg.norm(part.normals, axis=1, keepdims=True)
+    unit = part.normals / np.where(lengths > 0.0, lengths, 1.0)
+    found: NDArray[np.float64] = unit[part.faces if part.normal_corners is None else part.normal_corners]
     return found
 
 

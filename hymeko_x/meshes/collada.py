@@ -1,7 +1,7 @@
 """The triangles of plain COLLADA files, straight into arrays, and the colours that they are shown in.
 
-Normals, and texture coordinates in a file without images, are not even turned into numbers, and of materials only their
-colour or image counts. Whatever is not plain (skins, instances of nodes, other primitives than triangles and polygons, other
+Normals that are not asked for, and texture coordinates in a file without images, are not even turned into numbers, and of materials
+only their colour or image counts. Whatever is not plain (skins, instances of nodes, other primitives than triangles and polygons, other
 transformations than the usual ones, damage of any kind) is left to the loader for all of COLLADA, with which alone a whole
 conversion of a robot with COLLADA meshes takes up to 35 % longer (`python -m benchmarks.meshes`).
 """
@@ -16,10 +16,13 @@ from urllib.parse import unquote
 import numpy as np
 from lxml import etree
 
+from hymeko_x.meshes.normals import turned_normals
 from hymeko_x.meshes.numerals import numbers_in
 from hymeko_x.meshes.submesh import MaterialEntry, MaterialGroup, fans, used_rows
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from lxml.etree import _Element as Element
     from numpy.typing import NDArray
 
@@ -38,14 +41,15 @@ class NotPlain(Exception):
     """The file has something that this reader leaves to others."""
 
 
-def collada_groups(data: bytes) -> list[MaterialGroup] | None:
+def collada_groups(data: bytes, *, normals: bool = False) -> list[MaterialGroup] | None:
     """The points in m and the triangles of all that the scene of a COLLADA file shows; None where the file is not plain.
 
-    Nodes move what is below them and the file's unit counts; its up axis does not. Numbers are read in single precision.
+    Nodes move what is below them and the file's unit counts; its up axis does not. Numbers are read in single precision. Groups have
+    ``normals`` if asked for and the file has them.
     Source: COLLADA 1.4.1, sections 5 and 6 (core elements, geometry).
     """
     try:
-        return _File(_root(data)).groups()
+        return _File(_root(data), normals=normals).groups()
     except (NotPlain, ValueError, OverflowError):  # what is not a number, and numbers that are too large
         return None
 
@@ -62,6 +66,7 @@ class _File:
     """One file while it is read: its libraries by id, and the numbers of each geometry, which are read once."""
 
     root: Element
+    normals: bool
     geometries: dict[str | None, list[Element]] = field(init=False)
     materials: dict[str | None, list[Element]] = field(init=False)
     effects: dict[str | None, list[Element]] = field(init=False)
@@ -129,7 +134,7 @@ class _File:
     def _geometry(self, name: str) -> list[MaterialGroup]:
         if name not in self.known:
             mesh = _only(_only(self.geometries.get(name, [])).findall("{*}mesh"))
-            self.known[name] = _mesh_tables(mesh, has_images=bool(self.images))
+            self.known[name] = _mesh_tables(mesh, has_images=bool(self.images), normals=self.normals)
         return self.known[name]
 
 
@@ -215,19 +220,23 @@ _MOVES = {"matrix": _matrix, "translate": _translation, "scale": _scaling, "rota
 
 
 def _placed(group: MaterialGroup, matrix: NDArray[np.float64], metres: float) -> MaterialGroup:
-    """The triangles where a node puts them, in m; a mirror turns them around, so that they still appearance outwards."""
-    points, faces, corners = group.points, group.faces, group.corners
+    """The triangles where a node puts them, in m; a mirror turns them around, so that they still face outwards."""
+    points = group.points
     if not np.array_equal(matrix, np.eye(4)):
         points = points @ matrix[:3, :3].T + matrix[:3, 3]
+    if group.normals is not None:
+        normals = turned_normals(group.normals, matrix[:3, :3])
+        group = group._replace(normals=normals, normal_corners=None if normals is None else group.normal_corners)
     if np.linalg.det(matrix[:3, :3]) < 0.0:
-        faces, corners = faces[:, ::-1], None if corners is None else corners[:, ::-1]
-    return group._replace(points=points * metres, faces=faces, corners=corners)
+        rows = {name: getattr(group, name) for name in ("faces", "corners", "normal_corners")}
+        group = group._replace(**{name: found[:, ::-1] for name, found in rows.items() if found is not None})
+    return group._replace(points=points * metres)
 
 
 # ---- geometry ----------------------------------------------------------------------------------------------------------------
 
 
-def _mesh_tables(mesh: Element, *, has_images: bool) -> list[MaterialGroup]:
+def _mesh_tables(mesh: Element, *, has_images: bool, normals: bool) -> list[MaterialGroup]:
     """One group for each primitive; with texture coordinates only where there are images."""
     sources = {f"#{child.get('id')}": child for child in mesh if _tag(child) in ("source", "vertices")}
     known: dict[str, NDArray[np.float64]] = {}
@@ -235,20 +244,51 @@ def _mesh_tables(mesh: Element, *, has_images: bool) -> list[MaterialGroup]:
     for child in mesh:
         tag = _tag(child)
         if tag in ("triangles", "polylist"):
-            name, (index, places) = _input(child, "VERTEX"), _index(child)
+            name, rows = _input(child, "VERTEX"), _index(child)
             if name not in known:
                 known[name] = _points(sources.get(name), sources)
-            faces = _triangles(child, index, known[name])
+            faces = _triangles(child, rows["VERTEX"], known[name])
             group = MaterialGroup(*used_rows(known[name], faces), child.get("material", ""))
-            map_name = _map_name(child) if has_images and places is not None else ""
-            if places is not None and map_name in sources:
-                if map_name not in known:
-                    known[map_name] = _floats(sources[map_name], (2, 3))[:, :2]
-                group = group._replace(uv=known[map_name], corners=_triangles(child, places, known[map_name]))
-            found.append(group)
+            if has_images and "TEXCOORD" in rows:
+                group = _with_places(group, child, rows["TEXCOORD"], sources, known)
+            found.append(_with_normals(group, child, rows, sources, known) if normals else group)
         elif tag not in ("source", "vertices") and tag not in _PASSED_OVER:
             raise NotPlain
     return found
+
+
+def _with_places(
+    group: MaterialGroup, primitive: Element, rows: NDArray[Any], sources: Mapping[str, Element], known: dict[str, NDArray[np.float64]]
+) -> MaterialGroup:
+    """With the first texture coordinates of the corners, of which ``rows`` are the numbers."""
+    name = _source_name(primitive, "TEXCOORD")
+    if name not in sources:
+        return group
+    if name not in known:
+        known[name] = _floats(sources[name], (2, 3))[:, :2]
+    return group._replace(uv=known[name], corners=_triangles(primitive, rows, known[name]))
+
+
+def _with_normals(
+    group: MaterialGroup,
+    primitive: Element,
+    rows: Mapping[str, NDArray[Any]],
+    sources: Mapping[str, Element],
+    known: dict[str, NDArray[np.float64]],
+) -> MaterialGroup:
+    """With the normals of the corners, which may be those of its points; without where they do not fit: any viewer computes some."""
+    name, own = _source_name(primitive, "NORMAL"), "NORMAL"
+    if not name:
+        name, own = _source_name(sources[_input(primitive, "VERTEX")], "NORMAL"), "VERTEX"
+    if name not in sources or own not in rows:
+        return group
+    try:
+        if name not in known:
+            known[name] = _floats(sources[name], (_COMPONENTS,))
+        normals, corners = used_rows(known[name], _triangles(primitive, rows[own], known[name]))
+    except (NotPlain, ValueError):
+        return group
+    return group._replace(normals=normals, normal_corners=corners)
 
 
 def _triangles(primitive: Element, index: NDArray[Any], rows: NDArray[Any]) -> NDArray[Any]:
@@ -260,28 +300,26 @@ def _triangles(primitive: Element, index: NDArray[Any], rows: NDArray[Any]) -> N
     return faces
 
 
-def _index(primitive: Element) -> tuple[NDArray[Any], NDArray[Any] | None]:
-    """For each corner of a primitive the row of its point, and of its place in an image if it has one.
+def _index(primitive: Element) -> dict[str, NDArray[Any]]:
+    """For each corner of a primitive the row of its point, of its place in an image, and of its normal, as far as it has them.
 
-    The rows of its normals and of other inputs are between them.
+    The rows of other inputs are between them.
     """
-    inputs = [(int(item.get("offset", "")), item.get("semantic")) for item in primitive.iterfind("{*}input")]
-    places = [offset for offset, semantic in inputs if semantic == "VERTEX"]
-    if len(places) != 1 or min(offset for offset, _ in inputs) < 0:
+    inputs = [(int(item.get("offset", "")), item.get("semantic", "")) for item in primitive.iterfind("{*}input")]
+    if [semantic for _, semantic in inputs].count("VERTEX") != 1 or min(offset for offset, _ in inputs) < 0:
         raise NotPlain
-    places += [offset for offset, semantic in inputs if semantic == "TEXCOORD"][:1]
+    places = {semantic: offset for offset, semantic in reversed(inputs) if semantic in ("VERTEX", "TEXCOORD", "NORMAL")}
     width = max(offset for offset, _ in inputs) + 1
-    lists = [_numbers(item, np.int64).reshape(-1, width)[:, places] for item in primitive.iterfind("{*}p")]
+    lists = [_numbers(item, np.int64).reshape(-1, width)[:, list(places.values())] for item in primitive.iterfind("{*}p")]
     rows = np.concatenate(lists) if lists else np.zeros((0, len(places)), dtype=np.int64)
     if rows.size and rows.max() > np.iinfo(_INDEX).max:
         raise NotPlain
-    rows = rows.astype(_INDEX)
-    return rows[:, 0], rows[:, 1] if len(places) > 1 else None
+    return dict(zip(places, rows.astype(_INDEX).T, strict=True))
 
 
-def _map_name(primitive: Element) -> str:
-    """The source of the first texture coordinates of a primitive."""
-    found = [item.get("source", "") for item in primitive.iterfind("{*}input") if item.get("semantic") == "TEXCOORD"]
+def _source_name(primitive: Element, semantic: str) -> str:
+    """The source of the first input of a primitive that has this meaning."""
+    found = [item.get("source", "") for item in primitive.iterfind("{*}input") if item.get("semantic") == semantic]
     return found[0] if found else ""
 
 

@@ -9,6 +9,7 @@ import posixpath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from hymeko_x.meshes.scene import read_scene
 from hymeko_x.meshes.stl import read_stl
@@ -48,7 +49,7 @@ def read_parts(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tuple
     if suffix == ".stl":
         return (_welded(read_stl(data), None),)
     groups = _by_appearance(read_scene(data, suffix, fetch))
-    return sound(tuple(_welded(*_corners(group), group[0].appearance) for group in groups))
+    return sound(tuple(map(_in_one, groups)))
 
 
 def check_file(data: bytes, suffix: str) -> None:
@@ -89,19 +90,29 @@ def _by_appearance(parts: list[Submesh]) -> list[list[Submesh]]:
     return list(groups.values())
 
 
-def _corners(group: list[Submesh]) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
-    """The corners (faces, 3, 3) of all triangles of the parts, and their texture coordinates where all have some."""
-    corners = np.concatenate([part.points[part.faces] for part in group])
-    maps = [part.uv[part.faces] for part in group if part.uv is not None]
-    return corners, np.concatenate(maps) if len(maps) == len(group) else None
+def _in_one(group: Sequence[Submesh]) -> Submesh:
+    """All triangles of parts of one appearance, with their texture coordinates and normals where all have some."""
+    tables = [[_at_corners(part.uv, part.corners, part), _at_corners(part.normals, part.normal_corners, part)] for part in group]
+    uv, normals = (None if any(table is None for table in of_all) else np.concatenate(of_all) for of_all in zip(*tables, strict=True))
+    return _welded(np.concatenate([part.points[part.faces] for part in group]), uv, group[0].appearance, normals)
 
 
-def _welded(corners: NDArray[Any], uv: NDArray[np.float64] | None, appearance: Appearance | None = None) -> Submesh:
+def _at_corners(table: NDArray[Any] | None, rows: NDArray[Any] | None, part: Submesh) -> Any:
+    return None if table is None else table[part.faces if rows is None else rows]
+
+
+def _welded(
+    corners: NDArray[Any], uv: NDArray[np.float64] | None, appearance: Appearance | None = None, normals: NDArray[np.float64] | None = None
+) -> Submesh:
     """Triangles with their common points shared; triangles with two equal corners are left out."""
     flat = corners.reshape(-1, 3)
     unique, index = joined(flat if uv is None else np.hstack([flat, uv.reshape(-1, 2)]))
     points, maps = unique[:, :3].astype(np.float64), None if uv is None else unique[:, 3:]
-    return Submesh(points, _without_degenerate(index.reshape(-1, 3)), maps, appearance)
+    faces = index.reshape(-1, 3)
+    if normals is None:
+        return Submesh(points, _without_degenerate(faces), maps, appearance)
+    table, rows = joined(normals.reshape(-1, 3))
+    return Submesh(points, _without_degenerate(faces), maps, appearance, None, table, rows.reshape(-1, 3)[are_proper(faces)])
 
 
 def _without_degenerate(faces: NDArray[Any]) -> NDArray[Any]:
@@ -193,7 +204,7 @@ def _plain_groups(
     if suffix == ".dae":
         from hymeko_x.meshes.collada import collada_groups
 
-        return collada_groups(data) or []
+        return collada_groups(data, normals=normals) or []
     if suffix == ".obj":
         from hymeko_x.meshes.obj import obj_groups
 
@@ -207,30 +218,26 @@ def _nothing_beside(name: str) -> bytes:
 
 
 def merged(parts: tuple[Submesh, ...]) -> Submesh:
-    """All triangles as one submesh without an appearance."""
-    if len(parts) == 1:
-        return parts[0]
-    return _welded(np.concatenate([part.points[part.faces] for part in parts]), None)
+    """All triangles as one submesh without an appearance, with texture coordinates and normals where all have some."""
+    return parts[0] if len(parts) == 1 else replace(_in_one(parts), appearance=None)
 
 
 # ---- colours and images --------------------------------------------------------------------------------------------------------------
 
-_IN_SCENES = (".glb", ".gltf")
-
 
 def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, miss: Callable[[str], None] | None = None) -> ColouredMesh:
-    """The triangles of a COLLADA, OBJ or glTF file, in its order, with its colours and images; those of other files have none.
+    """The triangles of a file, in its order, with its colours, images and normals; STL has none of them.
 
     ``miss`` is called with every missing image of a COLLADA or OBJ file; its triangles have their colour instead.
 
     Raises: Unreadable.
     """
     check_file(data, suffix)
-    if suffix in _IN_SCENES:
-        return _coloured([_piece_of(part) for part in read_parts(data, suffix, fetch)])
+    if suffix == ".stl":
+        return ColouredMesh(read_whole(data, suffix, fetch))
     groups = [group for group in _plain_groups(data, suffix, lambda name: _fetched(name, fetch), normals=True) if len(group.faces)]
     if not groups:
-        return ColouredMesh(read_whole(data, suffix, fetch))
+        return _coloured([_piece_of(part) for part in read_parts(data, suffix, fetch)])
     images = _images(groups, fetch)
     for name in dict.fromkeys(group.entry.image for group in groups if group.entry.image and group.entry.image not in images):
         if miss is not None:
@@ -244,14 +251,21 @@ def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, mis
 
 
 def read_mapped(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Submesh:
-    """All triangles of a file without its appearances; with texture coordinates where it is an OBJ file that has them for every corner.
+    """All triangles of a file without its appearances, with its normals; with texture coordinates where it is an OBJ file that has them.
+
+    Both are there where every corner has some.
 
     Raises: Unreadable.
     """
     check_file(data, suffix)
-    groups = [group for group in (_plain_groups(data, suffix, mapped=True, normals=True) if suffix == ".obj" else ()) if len(group.faces)]
-    if not groups or any(group.uv is None for group in groups):
+    if suffix == ".stl":
         return read_whole(data, suffix, fetch)
+    groups = [group for group in _plain_groups(data, suffix, mapped=True, normals=True) if len(group.faces)]
+    if not groups:
+        found = read_scene(data, suffix, fetch if suffix in _IN_SEVERAL_FILES else _nothing_beside, with_appearance=False)
+        groups = [_group_of(part) for part in found]
+    if suffix != ".obj" or any(group.uv is None for group in groups):
+        groups = [group._replace(uv=None, corners=None) for group in groups]
     return _coloured([(None, group) for group in groups]).mesh
 
 
@@ -293,9 +307,16 @@ def _appearance_of(group: MaterialGroup, images: dict[str, bytes]) -> Appearance
 def _piece_of(part: Submesh) -> tuple[Appearance | None, MaterialGroup]:
     """A submesh of a scene as a group; one without texture coordinates has no image."""
     has_appearance = part.appearance is not None and (part.appearance.rgba is not None or part.uv is not None)
-    return part.appearance if has_appearance else None, MaterialGroup(
-        part.points, part.faces, uv=part.uv, corners=None if part.uv is None else part.faces
+    return part.appearance if has_appearance else None, _group_of(part)
+
+
+def _group_of(part: Submesh) -> MaterialGroup:
+    """A submesh as a group of the triangles of a file."""
+    corners, normal_corners = (
+        None if table is None else part.faces if rows is None else rows
+        for table, rows in ((part.uv, part.corners), (part.normals, part.normal_corners))
     )
+    return MaterialGroup(part.points, part.faces, uv=part.uv, corners=corners, normals=part.normals, normal_corners=normal_corners)
 
 
 def _coloured(pieces: list[tuple[Appearance | None, MaterialGroup]]) -> ColouredMesh:

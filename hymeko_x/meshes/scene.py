@@ -9,6 +9,7 @@ from xml.etree.ElementTree import ParseError
 
 import numpy as np
 
+from hymeko_x.meshes.normals import turned_normals
 from hymeko_x.meshes.obj import opacity
 from hymeko_x.meshes.submesh import MOST_FACES, Appearance, Submesh, Unreadable
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def read_scene(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, with_appearance: bool = True) -> list[Submesh]:
-    """Every geometry of the file at the pose of its node, in m; with its appearance if wanted."""
+    """Every geometry of the file at the pose of its node, in m; with its normals, and its appearance if wanted."""
     import trimesh
 
     try:
@@ -29,7 +30,11 @@ def read_scene(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, with_
             return _collada_parts(data, fetch, with_appearance=with_appearance)
         scene = trimesh.load_scene(io.BytesIO(data), suffix[1:], resolver=_resolver(fetch), process=False)
         placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
-        return [part for matrix, name in placed for part in _placed_part(scene.geometry[name], matrix, with_appearance=with_appearance)]
+        return [
+            part
+            for matrix, name in placed
+            for part in _placed_part(scene.geometry[name], matrix, _file_normals(scene.geometry[name]), with_appearance=with_appearance)
+        ]
     except _raised_by_loaders(suffix) as error:
         raise Unreadable(str(error).split("\n")[0][:200] or type(error).__name__) from error
 
@@ -40,16 +45,22 @@ def _collada_parts(data: bytes, fetch: Callable[[str], bytes], *, with_appearanc
     from trimesh.exchange.dae import load_collada
 
     loaded = load_collada(io.BytesIO(data), resolver=_resolver(fetch))  # type: ignore[no-untyped-call]
-    meshes = {
-        name: trimesh.Trimesh(**{**arguments, "vertex_normals": None}, process=False, validate=False)
-        for name, arguments in loaded["geometry"].items()
-    }
+    normals = {name: arguments.pop("vertex_normals", None) for name, arguments in loaded["geometry"].items()}
+    meshes = {name: trimesh.Trimesh(**arguments, process=False, validate=False) for name, arguments in loaded["geometry"].items()}
     return [
-        part for node in loaded["graph"] for part in _placed_part(meshes[node["geometry"]], node["matrix"], with_appearance=with_appearance)
+        part
+        for node in loaded["graph"]
+        for name in (node["geometry"],)
+        for part in _placed_part(meshes[name], node["matrix"], normals[name], with_appearance=with_appearance)
     ]
 
 
-def _placed_part(mesh: Any, matrix: Any, *, with_appearance: bool) -> Iterable[Submesh]:
+def _file_normals(mesh: Any) -> Any:
+    """The normals that a file has for its points; None where trimesh would compute them."""
+    return mesh.vertex_normals if "vertex_normals" in getattr(mesh, "_cache", ()) else None
+
+
+def _placed_part(mesh: Any, matrix: Any, normals: Any, *, with_appearance: bool) -> Iterable[Submesh]:
     import trimesh
 
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
@@ -63,7 +74,8 @@ def _placed_part(mesh: Any, matrix: Any, *, with_appearance: bool) -> Iterable[S
     if np.linalg.det(matrix[:3, :3]) < 0.0:
         faces = faces[:, ::-1]
     appearance, uv = _appearance_of(mesh) if with_appearance else (None, None)
-    yield Submesh(points, faces, uv, appearance)
+    turned = None if normals is None or len(normals) != len(points) else turned_normals(normals, matrix[:3, :3])
+    yield Submesh(points, faces, uv, appearance, normals=turned)
 
 
 def _metres(units: str | None) -> float:

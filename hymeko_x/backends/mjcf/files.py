@@ -233,7 +233,10 @@ def _pack_hull(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], f
     Raises: Unreadable.
     """
     from hymeko_x.meshes.reader import merged
+    from hymeko_x.meshes.submesh import Submesh
 
+    if len(parts) > 1:  # then it is not also the mesh to show
+        parts = tuple([Submesh(part.points, part.faces) for part in parts])
     _store(run, key, key, mesh, merged(parts), file, solid=True)
     return key
 
