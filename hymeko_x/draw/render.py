@@ -68,6 +68,8 @@ class Studio:
 
         self._name = name
         self._look = look
+        if look.is_authored:
+            _remove_surroundings(spec)
         self.model = _compiled(spec, name)
         self.data = mujoco.MjData(self.model)
         self._place(look.pose)
@@ -75,8 +77,6 @@ class Studio:
         if like is not None:
             self._take_joints_of(like)
         self.corners: Corners = self._own_corners() if like is None else like.corners
-        if look.is_authored:
-            _remove_surroundings(spec)
         self.model = _compiled(_with_scene(spec, self.model, self.corners, look), name)
         placed, self.data = self.data, mujoco.MjData(self.model)
         self.data.qpos[:] = placed.qpos
@@ -254,11 +254,20 @@ def _remove_surroundings(spec: Any) -> None:
         setattr(spec.visual, part, getattr(plain, part))
     for texture in [texture for texture in spec.textures if texture.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX]:
         spec.delete(texture)
-    for skin in tuple(spec.skins):
-        spec.delete(skin)
+    if spec.skins:
+        _show_below_skins(spec)
     for geom in spec.worldbody.geoms:
         if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
             geom.material, geom.rgba = "", [0.0] * 4
+
+
+def _show_below_skins(spec: Any) -> None:
+    """Skins away, and the shapes for the eye that they stand for, such as bones in a group that viewers hide, in a group that they show."""
+    for skin in tuple(spec.skins):
+        spec.delete(skin)
+    for geom in spec.geoms:
+        if not geom.contype and not geom.conaffinity and geom.group in _COLLISION:
+            geom.group = max(_VISUAL)
 
 
 def _with_scene(spec: Any, model: mujoco.MjModel, corners: Corners, look: Look) -> Any:

@@ -124,3 +124,17 @@ def test_a_joint_with_a_reference_is_drawn_where_it_is_in_the_first_robot(tmp_pa
 def test_an_ellipsoid_looks_the_same_as_a_mesh_of_urdf(tmp_path: Path) -> None:
     body = '<body name="egg"><geom type="ellipsoid" size="0.1 0.2 0.4" mass="1" rgba="0 0.5 0.5 1"/></body>'
     assert through_urdf(body, tmp_path) < renders.CHANGED
+
+
+SKINNED = """<mujoco model="r"><default><geom contype="0" conaffinity="0"/></default>
+<asset><mesh name="bone" vertex="0 0 0  0.3 0 0  0 0.1 0  0 0 0.4"/>
+  <skin name="s" vertex="0 0 0  0.3 0 0  0 0.1 0" face="0 1 2" texcoord="0 0  1 0  1 1">
+  <bone body="b" bindpos="0 0 0" bindquat="1 0 0 0" vertid="0 1 2" vertweight="1 1 1"/></skin></asset>
+<worldbody><body name="b" pos="0 0 1"><freejoint/><geom size="0.02" pos="0.1 0 0.3" mass="1"/>
+  <geom type="mesh" mesh="bone" group="5" rgba="0.5 0.5 0.5 1"/></body></worldbody></mujoco>"""
+
+
+def test_bones_below_a_skin_are_compared(tmp_path: Path) -> None:
+    (tmp_path / "r.xml").write_text(SKINNED)
+    found = renders.drawn(str(tmp_path / "r.xml"))
+    assert (found.reason, found.failed, found.faults) == ("", {}, [])

@@ -288,12 +288,10 @@ class Page:
         if self._joints is not None:
             self._joints.remove()
         self._joints = self.server.gui.add_folder("Joints", order=6.0)
-        self.sliders = []
         with self._joints:
             reset = self.server.gui.add_button("rest")
             reset.on_click(lambda _: self._reset(sliders))
-            for number, (slider, label) in enumerate(zip(sliders, labels, strict=True)):
-                self.sliders.append(self._slider(number, slider, label))
+            self.sliders = [self._slider(number, slider, label) for number, (slider, label) in enumerate(zip(sliders, labels, strict=True))]
 
     def _slider(self, number: int, slider: Slider, label: str) -> Handle:
         step = max((slider.upper - slider.lower) / 1000.0, 1e-9)

@@ -91,8 +91,9 @@ class Session:
             self._place()
             self.page.show_problem("")
             self._round += 1
-        self._finder = threading.Thread(target=self._find, args=(self._round,), daemon=True)
-        self._finder.start()
+            finder = threading.Thread(target=self._find, args=(self._round,), daemon=True)
+            finder.start()
+            self._finder = finder  # from now on: :meth:`stop` waits for it
 
     def _find(self, number: int) -> None:
         """What got lost, and what the verifier says, as soon as it does."""
