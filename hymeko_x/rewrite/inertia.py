@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import listed
+from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import native_format
 from hymeko_x.ir.notations import WITHOUT_TENSOR
 from hymeko_x.ir.parts import Body, Inertial
@@ -98,7 +98,8 @@ def give_every_body_mass(mechanism: Mechanism, context: Context) -> Mechanism:
             changed[key] = replace(body, inertial=_least_inertial(body.inertial))
     if changed:
         names = listed([f"'{key.name}'" for key in changed], 5)
-        message = f"{len(changed)} links have no mass or no inertia; mass {LEAST!r} and inertia {LEAST!r} are written: {names}"
+        links = counted(len(changed), "link has", "links have")
+        message = f"{links} no mass or no inertia; mass {LEAST!r} and inertia {LEAST!r} are written: {names}"
         context.report.note(codes.INERTIA_REPAIRED, message, element=str(next(iter(changed))))
     return mechanism.replace(vertices=changed)
 
