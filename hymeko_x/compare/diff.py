@@ -200,7 +200,7 @@ def _tuples(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance:
             yield path, None, _short(b[number])
         elif number >= len(b):
             yield path, _short(a[number]), None
-        else:
+        elif a[number] != b[number]:
             yield from _found(path, leaves_of(a[number], b[number]), tolerance)
 
 

@@ -54,8 +54,14 @@ def clean_pose(pose: Pose) -> Pose:
 
 
 def _changed(parts: Mapping[Id, Any], before: Mapping[Id, Any]) -> dict[Id, Any]:
-    """The parts that the source does not have like this, as far as they have long numbers."""
-    return {key: part for key, part in parts.items() if part is not before.get(key) and _long_numbers((part,))}
+    """The parts with long numbers that the source's part of this id does not have."""
+    found: dict[Id, Any] = {}
+    for key, part in parts.items():
+        old = before.get(key)
+        numbers = [] if part is old else _long_numbers((part,))
+        if numbers and (old is None or not {*numbers} <= {*_long_numbers((old,))}):
+            found[key] = part
+    return found
 
 
 def _known(source: Mechanism) -> frozenset[float]:
