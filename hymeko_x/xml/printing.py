@@ -140,7 +140,7 @@ def render(tag: Tag, depth: int = 0) -> list[str]:
                 lines.append(indent + child if child else "")
                 continue
             name, children = child.name, child.children
-            start = f"{indent}<{name}{attributes_text(child.attributes)}"
+            start = f"{indent}<{name}{attributes_text(child.attributes)}" if child.attributes else f"{indent}<{name}"
             if not children and not child.has_end:
                 lines.append(start + "/>")
             elif len(children) == 1 and isinstance(children[0], str) and not children[0].startswith("<"):

@@ -12,10 +12,10 @@ from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.gearboxes import ENDS, GEARBOX, RATIO
 from hymeko_x.formats.sdf.values import (
     DYNAMICS,
+    LIMITS,
     NUMBER,
     OLD_PITCH,
     PITCH,
-    POSITION_LIMITS,
     STRENGTH_LIMITS,
     VECTOR,
     BadText,
@@ -114,19 +114,15 @@ def _add_dof(tag: Tag, dof: Dof, name: str, word: str, key: Id, scope: str, shee
             axis = tag.child(name)
             if not sheet.from_sdf:
                 axis.add("xyz").children.append("0 0 1")
-            sheet.put(axis, DYNAMICS[0], dof.damping, texts, f"{name}/")
+            sheet.put_all(axis, "dynamics", [(DYNAMICS[0], dof.damping)], texts, f"{name}/")
         return
     if dof.kind is DofKind.SCREW:
         _add_pitch(tag, dof, texts, sheet)
     axis = tag.add(name)
     _add_axis(axis, dof, name, key, scope, texts, sheet)
-    if words.JOINT_TYPES[word].bounded:
-        for limit in POSITION_LIMITS:
-            sheet.put(axis, limit, getattr(dof.limits, limit.name), texts, f"{name}/")
-    for limit in STRENGTH_LIMITS:
-        sheet.put(axis, limit, getattr(dof.limits, limit.name), texts, f"{name}/")
-    for value in DYNAMICS:
-        sheet.put(axis, value, getattr(dof, value.name), texts, f"{name}/")
+    limits = LIMITS if words.JOINT_TYPES[word].bounded else STRENGTH_LIMITS
+    sheet.put_all(axis, "limit", [(field, getattr(dof.limits, field.name)) for field in limits], texts, f"{name}/")
+    sheet.put_all(axis, "dynamics", [(field, getattr(dof, field.name)) for field in DYNAMICS], texts, f"{name}/")
     _add_mimic(axis, key, name, sheet)
 
 

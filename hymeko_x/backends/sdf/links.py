@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.values import Tensor
 
-_OPTIONAL = (Field("mass", "mass", NUMBER, 1.0), *TENSOR)
-_REQUIRED = tuple([field._replace(default=None) if field.default else field for field in _OPTIONAL])
+_MASS = Field("mass", "mass", NUMBER, 1.0)
+_NEW_MASS, *_NEW_TENSOR = [field._replace(default=None) if field.default else field for field in (_MASS, *TENSOR)]
 """Mass and moments are always written, unless the author of an SDF file left them out; products of zero never."""
 _DEFAULT = Inertial(1.0, tensor=(1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
 
@@ -76,8 +76,8 @@ def _add_inertial(link: Tag, key: Id, sheet: SdfSheet) -> None:
     frame, tensor = _as_written(inertial)
     _add_pose(tag, frame, texts)
     mass = 1.0 if inertial.mass is None else inertial.mass
-    for field, value in zip(_OPTIONAL if sheet.from_sdf else _REQUIRED, (mass, *tensor), strict=True):
-        sheet.put(tag, field, value, texts, "inertial/")
+    sheet.put(tag, _MASS if sheet.from_sdf else _NEW_MASS, mass, texts, "inertial/")
+    sheet.put_all(tag, "inertia", zip(TENSOR if sheet.from_sdf else _NEW_TENSOR, tensor, strict=True), texts, "inertial/")
 
 
 def _as_written(inertial: Inertial) -> tuple[Pose, Tensor]:

@@ -187,5 +187,7 @@ def _is_member(key: Id, sheet: SdfSheet) -> bool:
 
 def _scope_of_model(key: Id) -> str | None:
     """The scope of the model that a frame is, or None."""
+    if key.kind != "frame":
+        return None
     scope, own = words.split_scope(key.name)
-    return scope if key.kind == "frame" and own == words.MODEL_FRAME and scope else None
+    return scope if own == words.MODEL_FRAME and scope else None

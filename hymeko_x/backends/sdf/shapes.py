@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import materials
-from hymeko_x.formats.sdf.values import COLOUR, NUMBER, PAIR, SOLIDS, TEXT, VECTOR, BadText, Field
+from hymeko_x.formats.sdf.values import COLOUR, NUMBER, PAIR, SOLIDS, VECTOR, BadText, Field
 from hymeko_x.ir.parts import Material, Mesh, MeshShape, NoShape, Plane, Role
 from hymeko_x.ir.values import Pose, compose, inverse, quat_from_z, unit
 from hymeko_x.xml.printing import Tag
 from hymeko_x.xml.text import escaped
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from hymeko_x.backends.sdf.sheet import SdfSheet
     from hymeko_x.ir.mechanism import ShapeView
@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 
 _MISSING = object()
 """No value equals it: what has no default is always written."""
+_SOLIDS = {kind: (name, fields, tuple([field._replace(default=_MISSING) for field in fields])) for name, (kind, fields) in SOLIDS.items()}
+"""The element of each geometry, its fields, and those of geometries from other formats, which are always written."""
 _MU = Field("surface/friction/ode/mu", "friction", NUMBER)
 _DENSITY = Field("density", "density", NUMBER)
-_URI = Field("uri", "uri", TEXT)
 _SCALE = Field("scale", "scale", VECTOR, (1.0, 1.0, 1.0))
 _DIFFUSE = Field("diffuse", "rgba", COLOUR)
 _AMBIENT = Field("ambient", "rgba", COLOUR)
@@ -65,16 +66,15 @@ def _add_geometry(tag: Tag, view: ShapeView, normal: str | None, texts: Mapping[
             _add_plane(tag.add("plane"), (2.0 * x, 2.0 * y), normal, texts, sheet)
         case MeshShape():
             _add_mesh(tag.add("mesh"), view, texts, sheet)
-        case geometry:  # of what SDF alone has, nothing is written: it is an extra
-            for name, (kind, fields) in SOLIDS.items():
-                if isinstance(geometry, kind):
-                    _add_solid(tag.add(name), geometry, fields, texts, sheet)
+        case geometry if type(geometry) in _SOLIDS:  # of what SDF alone has, nothing is written: it is an extra
+            _add_solid(tag, geometry, texts, sheet)
 
 
-def _add_solid(tag: Tag, geometry: Geometry, fields: Iterable[Field], texts: Mapping[str, str], sheet: SdfSheet) -> None:
-    for field in fields:
-        known = field if sheet.from_sdf else field._replace(default=_MISSING)
-        sheet.put(tag, known, getattr(geometry, field.name), texts, f"geometry/{tag.name}/")
+def _add_solid(geometry_tag: Tag, geometry: Geometry, texts: Mapping[str, str], sheet: SdfSheet) -> None:
+    name, own, new = _SOLIDS[type(geometry)]
+    tag = geometry_tag.add(name)
+    for field in own if sheet.from_sdf else new:
+        sheet.put(tag, field, getattr(geometry, field.name), texts, f"geometry/{name}/")
 
 
 def _add_plane(tag: Tag, size: tuple[float, float], normal: str | None, texts: Mapping[str, str], sheet: SdfSheet) -> None:
@@ -91,7 +91,7 @@ def _add_mesh(tag: Tag, view: ShapeView, texts: Mapping[str, str], sheet: SdfShe
     mesh = sheet.mechanism.vertex(view.mesh, Mesh)
     uri = sheet.mesh_files.get(view.mesh, mesh.uri)
     if uri is not None:
-        sheet.put(tag, _URI, uri, {})
+        sheet.add_text(tag, "uri", escaped(uri))
     sheet.put(tag, _SCALE, mesh.scale, texts, "geometry/mesh/")
 
 

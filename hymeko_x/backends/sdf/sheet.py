@@ -17,17 +17,16 @@ from hymeko_x.ir.mechanism import ROOT, WORLD, numbers_weight
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Camera, Coupling, DofKind, Joint, Layer, Sense, Sensor, Texture
 from hymeko_x.ir.values import IDENTITY, Pose, numbers_text, rotation_angle, rpy_of
-from hymeko_x.xml.printing import foreign_text, put_back
-from hymeko_x.xml.text import attributes_text, escaped
+from hymeko_x.xml.printing import Tag, foreign_text, put_back
+from hymeko_x.xml.text import attributes_text
 from hymeko_x.xml.unread import COMMENT, FOLLOWING, PRECEDING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from hymeko_x.backends.sdf.gears import Gear
     from hymeko_x.formats.sdf.values import Codec, Field
     from hymeko_x.ir.mechanism import Extra, Id, JointView, Mechanism, RobotArc
-    from hymeko_x.xml.printing import Tag
 
 _PLACEMENTS = ("@placement_frame", "model/@placement_frame", "world/model/@placement_frame")
 _NEAR = 1e-9
@@ -185,13 +184,24 @@ class SdfSheet:
 
     def put(self, tag: Tag, field: Field, value: Any, texts: Mapping[str, str], prefix: str = "") -> None:
         """Write a value below a tag: as its author wrote it where that means the same, and not at all where it is the default."""
-        text = self.text(field.codec, value, field.default, texts.get(f"{prefix}{field.path}") if texts else None)
+        own = texts.get(f"{prefix}{field.path}") if texts else None
+        if own is None and value == field.default:
+            return
+        text = field.codec.write(value) if own is None else self.text(field.codec, value, field.default, own)
         if text is None:
             return
-        *steps, last = field.path.split("/")
-        for step in steps:
+        above, _, last = field.path.rpartition("/")
+        for step in above.split("/") if above else ():
             tag = tag.child(step)
-        self.add_text(tag, last, escaped(text))
+        self.add_text(tag, last, text)
+
+    def put_all(self, tag: Tag, name: str, values: Iterable[tuple[Field, Any]], texts: Mapping[str, str], prefix: str) -> None:
+        """Write values as :meth:`put` does, into a new child of a tag; no child without anything in it."""
+        place = Tag(name, {})
+        for field, value in values:
+            self.put(place, field, value, texts, f"{prefix}{name}/" if texts else "")
+        if place.children:
+            tag.children.append(place)
 
     def add_text(self, tag: Tag, name: str, text: str, **attributes: str) -> None:
         """Add a child with a text. It is ready text, which prints faster, except in files from SDF, whose extras may be in it."""
@@ -290,6 +300,8 @@ class SdfSheet:
 
     def put_back(self, tag: Tag, key: Id, without: str = "") -> None:
         """Write the extras of an element into its tag, except elements that begin with ``without``."""
+        if key not in self.mechanism.extras:
+            return
         own = [extra for extra in self.extras(key) if not (without and extra.text.startswith(without))]
         if own:
             put_back(tag, [extra for extra in own if extra.path not in (PRECEDING, FOLLOWING)], self.declared)
@@ -304,7 +316,7 @@ class SdfSheet:
 def is_near(a: Any, b: Any) -> bool:
     """Whether two values are the same up to rounding."""
     if isinstance(a, Pose) and isinstance(b, Pose):
-        return math.dist(a.xyz, b.xyz) <= _NEAR and rotation_angle(a.quat, b.quat) <= _NEAR
+        return math.dist(a.xyz, b.xyz) <= _NEAR and (a.quat == b.quat or rotation_angle(a.quat, b.quat) <= _NEAR)
     if isinstance(a, tuple) and isinstance(b, tuple):
         return len(a) == len(b) and all(is_near(x, y) for x, y in zip(a, b, strict=True))
     if isinstance(a, float) and isinstance(b, int | float):

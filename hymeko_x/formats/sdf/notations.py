@@ -77,8 +77,8 @@ _MARKS = ("relative_to", "rotation_format", "degrees")
 
 
 def _pose_text(pose: WrittenPose) -> str:
-    said = [f"{name}={value}" for name in _MARKS if (value := getattr(pose, name)) is not None]
-    return "; ".join([*said, pose.text])
+    marks = zip(_MARKS, (pose.relative_to, pose.rotation_format, pose.degrees), strict=True)
+    return "; ".join([*[f"{name}={value}" for name, value in marks if value is not None], pose.text])
 
 
 def _pose(text: str) -> WrittenPose:

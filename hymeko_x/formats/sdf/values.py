@@ -26,10 +26,11 @@ class BadText(Exception):
 
 
 class Codec(NamedTuple):
-    """How a value is read from text (raises BadText) and written."""
+    """How a value is read from text (raises BadText) and written; ``is_plain`` when the value is the numbers of its text."""
 
     read: Callable[[str], Any]
     write: Callable[[Any], str]
+    is_plain: bool = False
 
 
 def _number(text: str) -> float:
@@ -77,14 +78,13 @@ def _colour(text: str) -> tuple[float, ...]:
     return found if len(found) == 4 else (*found, 1.0)
 
 
-NUMBER = Codec(_number, number_text)
-VECTOR = Codec(_numbers(3), numbers_text)
-PAIR = Codec(_numbers(2), numbers_text)
+NUMBER = Codec(_number, number_text, is_plain=True)
+VECTOR = Codec(_numbers(3), numbers_text, is_plain=True)
+PAIR = Codec(_numbers(2), numbers_text, is_plain=True)
 BOUND = Codec(_bound, lambda value: "inf" if value is None else number_text(value))
 STRENGTH = Codec(_strength, lambda value: "inf" if value is None else number_text(value))
 TRUTH = Codec(_truth, lambda value: "true" if value else "false")
 COLOUR = Codec(_colour, numbers_text)
-TEXT = Codec(str, str)
 PITCH = Codec(lambda text: _number(text) / math.tau, lambda value: number_text(value * math.tau))
 """``screw_thread_pitch``: m per turn, right-handed; the IR has m per rad."""
 
@@ -110,23 +110,25 @@ class Field(NamedTuple):
 
 
 DYNAMICS = (
-    Field("dynamics/damping", "damping", NUMBER, 0.0),
-    Field("dynamics/friction", "friction", NUMBER, 0.0),
-    Field("dynamics/spring_reference", "spring_ref", NUMBER, 0.0),
-    Field("dynamics/spring_stiffness", "stiffness", NUMBER, 0.0),
+    Field("damping", "damping", NUMBER, 0.0),
+    Field("friction", "friction", NUMBER, 0.0),
+    Field("spring_reference", "spring_ref", NUMBER, 0.0),
+    Field("spring_stiffness", "stiffness", NUMBER, 0.0),
 )
-POSITION_LIMITS = (Field("limit/lower", "lower", BOUND), Field("limit/upper", "upper", BOUND))
-STRENGTH_LIMITS = (Field("limit/effort", "effort", STRENGTH), Field("limit/velocity", "velocity", STRENGTH))
+"""What <dynamics> contains."""
+STRENGTH_LIMITS = (Field("effort", "effort", STRENGTH), Field("velocity", "velocity", STRENGTH))
+LIMITS = (Field("lower", "lower", BOUND), Field("upper", "upper", BOUND), *STRENGTH_LIMITS)
+"""What <limit> contains."""
 
 TENSOR = (
-    Field("inertia/ixx", "xx", NUMBER, 1.0),
-    Field("inertia/iyy", "yy", NUMBER, 1.0),
-    Field("inertia/izz", "zz", NUMBER, 1.0),
-    Field("inertia/ixy", "xy", NUMBER, 0.0),
-    Field("inertia/ixz", "xz", NUMBER, 0.0),
-    Field("inertia/iyz", "yz", NUMBER, 0.0),
+    Field("ixx", "xx", NUMBER, 1.0),
+    Field("iyy", "yy", NUMBER, 1.0),
+    Field("izz", "zz", NUMBER, 1.0),
+    Field("ixy", "xy", NUMBER, 0.0),
+    Field("ixz", "xz", NUMBER, 0.0),
+    Field("iyz", "yz", NUMBER, 0.0),
 )
-"""In the order of the IR's tensors, with the values that libsdformat takes for missing ones."""
+"""What <inertia> contains, in the order of the IR's tensors, with the values that libsdformat takes for missing ones."""
 
 _RADIUS, _LENGTH = Field("radius", "radius", NUMBER, 1.0), Field("length", "length", NUMBER, 1.0)
 SOLIDS: Mapping[str, tuple[type[Geometry], tuple[Field, ...]]] = MappingProxyType(

@@ -123,24 +123,41 @@ class SdfBuilder(Builder):
             found.taken = True
         return self.child_value(node, last, field.codec, field.default, key, f"{prefix}{field.path}")
 
+    def values(self, node: Node, tag: str, fields: tuple[Field, ...], key: Id, prefix: str = "") -> dict[str, Any]:
+        """The values of fields in a child of a node, by name; see :meth:`value`."""
+        found = {each.name: each.default for each in fields}
+        place = node.child(tag)
+        if place is None:
+            return found
+        children: dict[str, Node] = {}
+        for child in place.children:
+            children.setdefault(child.tag, child)
+        for each in fields:
+            if (present := children.get(each.path)) is not None:
+                place.taken = present.taken = True
+                found[each.name] = self._value_of(present, place, each.codec, each.default, key, f"{prefix}{tag}/{each.path}")
+        return found
+
     def child_value(self, node: Node, tag: str, codec: Codec, default: Any, key: Id, path: str) -> Any:
         """The value of a child element; see :meth:`value`. A text that cannot be read is reported and stays an extra."""
         child = node.take_child(tag)
-        if child is None:
-            return default
+        return default if child is None else self._value_of(child, node, codec, default, key, path)
+
+    def _value_of(self, child: Node, node: Node, codec: Codec, default: Any, key: Id, path: str) -> Any:
+        """The value of a child element that was taken."""
         text = " ".join((child.text or "").split())
         try:
             value = codec.read(text)
         except BadText as error:
             node.leave(child)
-            message = f"{node.subject}: <{tag}> is '{text[:60]}', expected {error}; the default is used, and the text is kept as written"
-            self.error(codes.BAD_NUMBER, child, message)
+            problem = f"<{child.tag}> is '{text[:60]}', expected {error}"
+            self.error(codes.BAD_NUMBER, child, f"{node.subject}: {problem}; the default is used, and the text is kept as written")
             return default
         if "; " in text:
             node.leave(child)
             return value
         child.text = None
-        if value == default or not is_same_text(codec.write(value), text):
+        if value == default or not (codec.is_plain or is_same_text(codec.write(value), text)):
             self.written.setdefault(key, {})[path] = text
         return value
 

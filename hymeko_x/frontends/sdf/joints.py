@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.gearboxes import GEARBOX
-from hymeko_x.formats.sdf.values import DYNAMICS, NUMBER, OLD_PITCH, PITCH, POSITION_LIMITS, STRENGTH_LIMITS, VECTOR, BadText
+from hymeko_x.formats.sdf.values import DYNAMICS, LIMITS, NUMBER, OLD_PITCH, PITCH, STRENGTH_LIMITS, VECTOR, BadText
 from hymeko_x.frontends.sdf.models import body_of
 from hymeko_x.frontends.sdf.sensors import read_joint_sensor
 from hymeko_x.ir.graph import Arc, Edge
@@ -17,7 +17,6 @@ from hymeko_x.ir.parts import Coupling, Dof, DofKind, Joint, Limits, World
 from hymeko_x.ir.values import Written, Z, rotate, unit
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.sdf.values import Field
     from hymeko_x.frontends.sdf.builder import Model, SdfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.values import Vec3
@@ -114,19 +113,17 @@ def _read_dofs(node: Node, kind: str, key: Id, model: Model, builder: SdfBuilder
 def _read_dof(node: Node, kind: DofKind, tag: str, word: str, key: Id, model: Model, builder: SdfBuilder) -> Dof:
     axis = node.take_child(tag)
     if kind is DofKind.BALL:
-        damping = 0.0 if axis is None else builder.value(axis, DYNAMICS[0], key, f"{tag}/")
-        return Dof(kind, damping=damping)
+        dynamics = {} if axis is None else builder.values(axis, "dynamics", DYNAMICS[:1], key, f"{tag}/")
+        return Dof(kind, **dynamics)
     pitch = _read_pitch(node, key, builder) if kind is DofKind.SCREW else 0.0
     if axis is None:
         builder.error(codes.MISSING_PART, node, f"{node.subject} has no <{tag}>; 0 0 1 is used")
         return Dof(kind, Z, pitch=pitch)
-
-    def values(fields: tuple[Field, ...]) -> dict[str, Any]:
-        return {field.name: builder.value(axis, field, key, f"{tag}/") for field in fields}
-
-    limits = Limits(**(values(POSITION_LIMITS) if words.JOINT_TYPES[word].bounded else {}), **values(STRENGTH_LIMITS))
+    fields = LIMITS if words.JOINT_TYPES[word].bounded else STRENGTH_LIMITS
+    limits = Limits(**builder.values(axis, "limit", fields, key, f"{tag}/"))
     direction, written = read_axis(axis, tag, key, model, builder)
-    return Dof(kind, direction, limits=limits, **values(DYNAMICS), pitch=pitch, written=written)
+    dynamics = builder.values(axis, "dynamics", DYNAMICS, key, f"{tag}/")
+    return Dof(kind, direction, limits=limits, **dynamics, pitch=pitch, written=written)
 
 
 def _read_pitch(node: Node, key: Id, builder: SdfBuilder) -> float:

@@ -59,7 +59,7 @@ def _read_inertial(link: Node, key: Id, model: Model, builder: SdfBuilder) -> In
         return None
     pose = _read_pose(node, key, builder)
     mass = builder.child_value(node, "mass", NUMBER, 1.0, key, "inertial/mass")
-    xx, yy, zz, xy, xz, yz = (builder.value(node, field, key, "inertial/") for field in TENSOR)
+    xx, yy, zz, xy, xz, yz = builder.values(node, "inertia", TENSOR, key, "inertial/").values()
     tensor: Tensor = (xx, yy, zz, xy, xz, yz)
     if mass < 0.0:
         builder.warn(codes.BAD_MASS, node, f"{link.subject}: the mass is negative, which libsdformat refuses; it is kept")
