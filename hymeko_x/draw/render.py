@@ -40,6 +40,12 @@ _FIELD_OF_VIEW = 35.0
 """The vertical angle of the camera in degrees: long enough that an arm does not look bent."""
 
 
+_AWAY = 8.0
+"""How many times its size from the robot the light is: near ones leave the ground dark at the edges of the picture."""
+_SHADOWED = 0.15
+"""The part of the light's cone in which shadows are drawn: so far away, about twice the robot."""
+
+
 class Look(Struct, frozen=True):
     """How a picture is made. ``size`` is width and height in pixels; ``pose`` the name of a keyframe, or a JSON file of joint positions.
 
@@ -289,8 +295,9 @@ def _with_scene(spec: Any, model: mujoco.MjModel, corners: Corners, look: Look) 
     centre = (corners.points.min(axis=0) + corners.points.max(axis=0)) / 2.0
     spec.stat.center, spec.stat.extent = centre, corners.size  # else they are those of the collision shapes, and shadows end elsewhere
     beam = (0.35, 0.3, -1.0)
-    light = spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_SPOT, castshadow=True, cutoff=75.0, exponent=0.0)
-    light.pos, light.dir = [at - 2.0 * corners.size * along for at, along in zip(centre, beam, strict=True)], beam
+    light = spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_SPOT, castshadow=True, cutoff=89.0, exponent=0.0)
+    light.pos, light.dir = [at - _AWAY * corners.size * along for at, along in zip(centre, beam, strict=True)], beam
+    spec.visual.map.shadowscale = _SHADOWED
     light.diffuse, light.specular = [0.6] * 3, [0.2] * 3
     if look.is_authored or not any(kind == mujoco.mjtGeom.mjGEOM_PLANE for kind in model.geom_type):
         _add_ground(spec, corners)

@@ -46,6 +46,14 @@ def picture(text: str, format: str = "urdf", **look: object) -> np.ndarray:
     return open_studio(robot, None, Look(**{"size": SIZE, **look})).still()  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("scale", [0.01, 50.0])
+def test_the_ground_is_light_up_to_the_corners_of_the_picture(scale: float) -> None:
+    text = f'<robot name="r"><link name="l"><visual><geometry><box size="{scale} {scale} {2 * scale}"/></geometry></visual></link></robot>'
+    found = picture(text).astype(int)
+    corners = [found[rows, columns].min() for rows in (slice(20), slice(-20, None)) for columns in (slice(20), slice(-20, None))]
+    assert min(corners) > 150, corners
+
+
 @pytest.mark.parametrize("view", ["front", "side", "top", "iso"])
 @pytest.mark.parametrize("scale", [0.01, 50.0])
 def test_the_robot_fills_the_picture(view: str, scale: float) -> None:
