@@ -26,6 +26,9 @@ Solid = tuple[Points, list[tuple[int, ...]]]
 Files = dict[str, bytes]
 """A file and those that it refers to, by their paths from one folder."""
 
+KINDS_OF_OBJ = (
+    "plain", "places", "normals", "objects", "backward", "backward places", "some normals", "unused normals", "own normals",
+)  # fmt: skip
 OUTPUTS = ("r.urdf", "r.xml", "r.usda", "r.sdf", "r.hymeko", "r.mjz")
 
 
@@ -53,15 +56,23 @@ def triangles(faces: list[tuple[int, ...]]) -> list[tuple[int, int, int]]:
     return [(face[0], face[at], face[at + 1]) for face in faces for at in range(1, len(face) - 1)]
 
 
+def directions(chance: random.Random, count: int) -> np.ndarray:
+    """Unit vectors, to single precision, that are not those of any surface."""
+    rows = np.array([[chance.gauss(0.0, 1.0) for _ in range(3)] for _ in range(count)])
+    return (rows / np.linalg.norm(rows, axis=1, keepdims=True)).astype(np.float32).astype(float)
+
+
 def obj(chance: random.Random) -> bytes:
     points, faces = solid(chance)
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in points]
-    kind = chance.choice(["plain", "places", "normals", "objects", "backward", "backward places", "some normals", "unused normals"])
+    kind = chance.choice(
+        ["plain", "places", "normals", "objects", "backward", "backward places", "some normals", "unused normals", "own normals"]
+    )
     if kind.endswith("places"):
         lines += [f"vt {x!r} {y!r}" for x, y, _ in points]
     if kind.endswith("normals"):
-        lines += ["vn 0 0 1"]
-    words = {"places": "{0}/{0}", "backward places": "{0}/{0}", "normals": "{0}//1"}.get(kind, "{0}")
+        lines += ["vn {!r} {!r} {!r}".format(*row) for row in directions(chance, len(points)).tolist()]
+    words = {"places": "{0}/{0}", "backward places": "{0}/{0}", "normals": "{0}//1", "own normals": "{0}//{0}"}.get(kind, "{0}")
     first = -len(points) if kind.startswith("backward") else 1
     for number, face in enumerate(faces):
         if kind == "objects" and number in (0, 4):
@@ -92,11 +103,12 @@ def msh(chance: random.Random) -> bytes:
 
 
 def other(suffix: str) -> Callable[[random.Random], bytes]:
-    """Files as trimesh writes them."""
+    """Files as trimesh writes them, some with normals of their own."""
 
     def made(chance: random.Random) -> bytes:
         points, faces = solid(chance)
-        mesh = trimesh.Trimesh(points, triangles(faces), process=False)
+        normals = directions(chance, len(points)) if suffix != "off" and chance.random() < 0.6 else None
+        mesh = trimesh.Trimesh(points, triangles(faces), vertex_normals=normals, process=False)
         data = mesh.export(file_type=suffix)
         return data if isinstance(data, bytes) else data.encode()
 
@@ -137,15 +149,22 @@ def robot(home: str, name: str) -> str:
 
 
 def measures(folder: Path, home: str) -> np.ndarray:
-    """Bounds, area and signed volume of all triangles as the programs of the format see them."""
+    """Bounds, area and normals of all triangles as the programs of the format see them; in MJCF their solids too."""
     if home == "r.xml":
         model = mujoco.MjModel.from_xml_path(str(folder / home))
         counts = [model.nmeshvert, model.nmeshface]
-        return np.array([*counts, *model.body_mass[1:], *model.body_inertia[1:].ravel(), *model.geom_aabb.ravel()])
+        normals = model.mesh_normal[model.mesh_facenormal.ravel()].ravel()
+        return np.array([*counts, *model.body_mass[1:], *model.body_inertia[1:].ravel(), *model.geom_aabb.ravel(), *normals])
     uri = hx.load(folder / home).mechanism
     paths = [mesh.uri for mesh in (uri.graph.vertices[view.mesh] for view in uri.every_shape() if view.mesh)]
-    whole = trimesh.util.concatenate([trimesh.load(folder / path, force="mesh", process=False) for path in dict.fromkeys(paths)])
-    return np.array([*whole.bounds.ravel(), whole.area])
+    meshes = [part for path in dict.fromkeys(paths) for part in trimesh.load_scene(folder / path, process=False).dump()]
+    whole = trimesh.util.concatenate(meshes)
+    return np.array([*whole.bounds.ravel(), whole.area, *np.mean([mean_normal(mesh) for mesh in meshes], axis=0)])
+
+
+def mean_normal(mesh: trimesh.Trimesh) -> np.ndarray:
+    """That of all corners of the triangles; zero where the file has none."""
+    return mesh.vertex_normals[mesh.faces].mean(axis=(0, 1)) if "vertex_normals" in mesh._cache else np.zeros(3)
 
 
 def assert_comes_back(home: str, suffix: str, chance: random.Random, outputs: tuple[str, ...] = OUTPUTS) -> None:
