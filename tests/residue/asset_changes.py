@@ -25,6 +25,7 @@ class Robot(NamedTuple):
     files: Mapping[str, bytes]
 
 
+FIRST, SECOND = "f 1/1/1 3/2/1 2/3/1\n", "f 1/1/2 2/2/2 4/3/2\n"
 OBJ = """mtllib part.mtl
 v 0 0 0
 v 0.1 0 0
@@ -34,12 +35,14 @@ v 0.5 0.5 0.5
 vt 0 0
 vt 1 0
 vt 0 1
+vn 0 0 -1
+vn 0 -0.6 0.8
 usemtl red
-f 1/1 3/2 2/3
-f 1/1 2/2 4/3
+f 1/1/1 3/2/1 2/3/1
+f 1/1/2 2/2/2 4/3/2
 usemtl blue
-f 1/1 4/2 3/3
-f 2/1 3/2 4/3
+f 1/1/2 4/2/2 3/3/2
+f 2/1/2 3/2/2 4/3/1
 """
 MTL = "newmtl red\nKd 1 0 0\nmap_Kd skin.png\nnewmtl blue\nKd 0 0 1\n"
 URDF = """<robot name="r"><link name="b"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
@@ -119,11 +122,13 @@ FILES = {
     "a point is moved": _replaced("part.obj", "v 0 0 0.3", "v 0 0 0.31"),
     "a point of no triangle is moved": _replaced("part.obj", "v 0.5 0.5 0.5", "v 0.5 0.5 0.6"),
     "a point of no triangle is gone": _replaced("part.obj", "v 0.5 0.5 0.5\n", ""),
-    "a triangle is gone": _replaced("part.obj", "f 2/1 3/2 4/3\n", ""),
-    "a triangle is turned": _replaced("part.obj", "f 2/1 3/2 4/3", "f 2/1 4/3 3/2"),
-    "two triangles are exchanged": _replaced("part.obj", "f 1/1 3/2 2/3\nf 1/1 2/2 4/3", "f 1/1 2/2 4/3\nf 1/1 3/2 2/3"),
+    "a triangle is gone": _replaced("part.obj", "f 2/1/2 3/2/2 4/3/1\n", ""),
+    "a triangle is turned": _replaced("part.obj", "f 2/1/2 3/2/2 4/3/1", "f 2/1/2 4/3/1 3/2/2"),
+    "two triangles are exchanged": _replaced("part.obj", f"{FIRST}{SECOND}", f"{SECOND}{FIRST}"),
     "a texture coordinate is moved": _replaced("part.obj", "vt 0 1", "vt 0 0.5"),
-    "a corner has another texture coordinate": _replaced("part.obj", "f 1/1 3/2 2/3", "f 1/3 3/2 2/3"),
+    "a corner has another texture coordinate": _replaced("part.obj", "f 1/1/1 3/2/1 2/3/1", "f 1/3/1 3/2/1 2/3/1"),
+    "a normal is turned": _replaced("part.obj", "vn 0 -0.6 0.8", "vn 0 -0.8 0.6"),
+    "a corner has another normal": _replaced("part.obj", "f 1/1/2 2/2/2 4/3/2", "f 1/1/1 2/2/2 4/3/2"),
     "the image of a material of the sheet is gone": _without("paper.png"),
     "a pixel of the sheet's image is another one": _image("paper.png", png(101)),
     "a texture coordinate of the sheet is moved": _replaced("sheet.obj", "vt 1 1", "vt 1 0.5"),
@@ -138,14 +143,14 @@ OF_URDF = {
     "a colour of a material of the file": _replaced("part.mtl", "Kd 0 0 1", "Kd 0 0.5 1"),
     "the image of a material of the file": _replaced("part.mtl", "map_Kd skin.png\n", ""),
     "the materials of the file are gone": _without("part.mtl"),
-    "a triangle shows another material": _replaced("part.obj", "usemtl blue\nf 1/1 4/2 3/3", "f 1/1 4/2 3/3\nusemtl blue"),
+    "a triangle shows another material": _replaced("part.obj", "usemtl blue\nf 1/1/2 4/2/2 3/3/2", "f 1/1/2 4/2/2 3/3/2\nusemtl blue"),
     "a corner of the hull is moved": _replaced("hull.stl", "vertex 0 0 1", "vertex 0 0 1.1"),
     "the colour is another one": _text('rgba="1 1 0 1"', 'rgba="1 0 0 1"'),
     "the image is another one": _text("paper.png", "skin.png"),
 }
 OF_MJCF = {
     "a point of the hull is moved": _replaced("hull.obj", "v 0 0 0.4", "v 0 0 0.45"),
-    "a triangle of the hull is gone": _replaced("hull.obj", "f 2/1 3/2 4/3\n", ""),
+    "a triangle of the hull is gone": _replaced("hull.obj", "f 2/1/2 3/2/2 4/3/1\n", ""),
     "the colour is another one": _text("1 1 1 0.5", "1 1 1 0.6"),
     "the texture is another one": _text('texture="t" rgba', 'texture="spare" rgba'),
 }
