@@ -10,6 +10,7 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes
+from hymeko_x.collector import uncollected
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.language.machine import ParseError
 from hymeko_x.language.parser import machine, parse
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from hymeko_x.language.machine import Convert, Reduce
 
 _COMMENT = re.compile(r"#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/")
+_WORDS = re.compile(rf'''{_COMMENT.pattern}|"""[\s\S]*?"""|"(?:\\[\s\S]|[^"\\])*"|`(?:\\.|[^`\\])*`|[^\s{{}}\[\](),]+|\S''')
+"""What white space, brackets and commas divide a text into: tokens, and runs of tokens without white space between them."""
 _PIECES = re.compile(r"[\[\],]|[^\s,\[\]]+")
 _ITEMS = (
     *(
@@ -70,6 +73,7 @@ class _Line(NamedTuple):
     is_after_blank: bool = False
 
 
+@uncollected()
 def format_text(text: str, name: str = "<text>") -> str:
     """The text in the usual layout; formatting that again changes nothing. ``name`` is the file's name for messages.
 
@@ -81,14 +85,19 @@ def format_text(text: str, name: str = "<text>") -> str:
         parse(text, name)
         raise
     lines: list[str] = []
-    for line in _fitted(_lines(tokens)):
+    for line, words in _fitted(_lines(tokens)):
         if line.is_after_blank and lines:
             lines.append("")
-        lines.append(INDENT * line.depth + _joined(line.tokens))
+        lines.append(INDENT * line.depth + words)
     found = "".join(f"{line}\n" for line in lines)
-    if found != text and [_plain(token) for token in _tokens(found)] != [_plain(token) for token in tokens]:
+    if found != text and _words(found) != _words(text) and [*map(_plain, _tokens(found))] != [*map(_plain, tokens)]:
         raise refuse(codes.BUG, "the text in its usual layout is another text; it is left as it is", Origin(name))
     return found
+
+
+def _words(text: str) -> list[str]:
+    """The words and brackets of a text. Where two texts have the same they have the same tokens."""
+    return [word.rstrip() for word in _WORDS.findall(text)]
 
 
 def _plain(token: Token) -> tuple[str, str]:
@@ -102,7 +111,7 @@ class _Collector(dict[str, "Convert"]):
     """Collects every token that the machine reads, with its place, and the places where items begin."""
 
     def __init__(self, text: str) -> None:
-        super().__init__(dict.fromkeys(machine().statements, self._statement))
+        super().__init__({kind: self._reader(kind) for kind in TERMINALS} | dict.fromkeys(machine().statements, self._statement))
         self.found: list[tuple[str, str, int]] = []
         self.starts: set[int] = set()
         self._text = text
@@ -112,11 +121,14 @@ class _Collector(dict[str, "Convert"]):
         self.found += machine().parts(self._text, offset, offset + len(word))
 
     def get(self, kind: str, default: object = None) -> Convert:
+        return super().get(kind) or self._reader(kind)
+
+    def _reader(self, kind: str) -> Convert:
         def convert(text: str, offset: int) -> str:
             self.found.append((kind, text, offset))
             return text
 
-        return super().get(kind, convert)
+        return convert
 
 
 def _tokens(text: str) -> list[Token]:
@@ -236,23 +248,25 @@ def _breaks_before(tokens: Sequence[Token], number: int, broken: set[int]) -> bo
 # ---- width ---------------------------------------------------------------------------------------------------------------------
 
 
-def _fitted(lines: Iterator[_Line]) -> Iterator[_Line]:
-    """The lines, those wider than the page broken where that is possible."""
+def _fitted(lines: Iterator[_Line]) -> Iterator[tuple[_Line, str]]:
+    """The lines with their words, those wider than the page broken where that is possible."""
     stack: list[_Line] = []
     for line in lines:
         stack.append(line)
         while stack:
             one = stack.pop()
-            parts = _parts(one) if _is_wide(one) else [one]
+            words = _joined(one.tokens)
+            parts = _parts(one) if _is_wide(one, words) else [one]
             if len(parts) == 1:
-                yield parts[0]
+                yield one, words
             else:
                 stack.extend(reversed(parts))
 
 
-def _is_wide(line: _Line) -> bool:
-    tokens = line.tokens[:-1] if line.tokens[-1].kind == "LINE_COMMENT" else line.tokens
-    return len(INDENT) * line.depth + len(_joined(tokens)) > WIDTH
+def _is_wide(line: _Line, words: str) -> bool:
+    """Whether a line with these words is wider than the page; a comment at its end does not count."""
+    counted = _joined(line.tokens[:-1]) if line.tokens[-1].kind == "LINE_COMMENT" else words
+    return len(INDENT) * line.depth + len(counted) > WIDTH
 
 
 def _parts(line: _Line) -> list[_Line]:

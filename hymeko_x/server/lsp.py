@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import re
-import time
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from lsprotocol import types
@@ -20,10 +20,8 @@ from hymeko_x.version import __version__
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Diagnostic
 
-_MOMENT = 0.15
-"""How long nothing is typed, in s, before a text is read, at most."""
-_SHARE = 0.25
-"""The same as a share of the time that reading took the last time: short texts are read between keystrokes, long ones in pauses."""
+_MOMENT = 0.02
+"""How long nothing is typed, in s, before a text is read: what an editor asks with a keystroke is answered before."""
 _SUGGESTION = re.compile(r"did you mean ([^?]+)\?")
 
 
@@ -33,8 +31,8 @@ class _Server(LanguageServer):
     def __init__(self) -> None:
         super().__init__("hymeko-x", __version__)
         self.known: dict[str, Analysis] = {}
-        self._took: dict[str, float] = {}
-        self._waiting: dict[str, asyncio.TimerHandle] = {}
+        self._waiting: dict[str, asyncio.TimerHandle | asyncio.Future[Analysis]] = {}
+        self._reader = ThreadPoolExecutor(1, "reader")
 
     def document(self, uri: str) -> Analysis:
         """A document in its latest version, with the robot of the last version that was read."""
@@ -56,24 +54,33 @@ class _Server(LanguageServer):
         return Workspace({uri: self.document(uri) for uri in [*self.workspace.text_documents]})
 
     def show_soon(self, uri: str) -> None:
-        """Send the diagnostics of a document as soon as nothing was typed for a moment: questions are answered before."""
-        if uri in self._waiting:
-            self._waiting[uri].cancel()
-        moment = min(_MOMENT, _SHARE * self._took.get(uri, 0.0))
-        self._waiting[uri] = asyncio.get_running_loop().call_later(moment, self.show, uri)
+        """Send the diagnostics of a document as soon as nothing was typed for a moment."""
+        self.forget(uri)
+        self._waiting[uri] = asyncio.get_running_loop().call_later(_MOMENT, self.show, uri)
 
-    def show(self, uri: str) -> None:
-        """Read a document, and send its diagnostics."""
+    def forget(self, uri: str) -> None:
+        """Read a document no more that waits to be read."""
         if uri in self._waiting:
             self._waiting.pop(uri).cancel()
+
+    def show(self, uri: str) -> None:
+        """Read a document, and send its diagnostics. Questions are answered while it is read."""
+        self.forget(uri)
         if uri not in self.workspace.text_documents:
             return
-        start = time.perf_counter()
-        document = analyse(uri, self.workspace.get_text_document(uri).source, self.known.get(uri))
-        self._took[uri] = time.perf_counter() - start
+        text = self.workspace.get_text_document(uri).source
+        reading = asyncio.get_running_loop().run_in_executor(self._reader, analyse, uri, text, self.known.get(uri))
+        reading.add_done_callback(lambda found: None if found.cancelled() else self._show(uri, found.result()))
+        self._waiting[uri] = reading
+
+    def _show(self, uri: str, document: Analysis) -> None:
+        """Send the diagnostics of a document that has been read, unless it has been changed since."""
+        if uri not in self.workspace.text_documents:
+            return
         self.known[uri] = document
-        found = [_diagnostic(document, one) for one in document.diagnostics]
-        self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, found))
+        if self.workspace.get_text_document(uri).source == document.text:
+            found = [_diagnostic(document, one) for one in document.diagnostics]
+            self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, found))
 
 
 def _diagnostic(document: Analysis, one: Diagnostic) -> types.Diagnostic:
@@ -124,6 +131,7 @@ def make_server() -> LanguageServer:
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def closed(given: types.DidCloseTextDocumentParams) -> None:
+        server.forget(given.text_document.uri)
         server.known.pop(given.text_document.uri, None)
         server.text_document_publish_diagnostics(types.PublishDiagnosticsParams(given.text_document.uri, []))
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from lsprotocol import types
@@ -67,9 +68,15 @@ def unquoted(name: str) -> str:
     return re.sub(r"\\(.)", r"\1", name[1:-1]) if name.startswith("`") else name
 
 
+@lru_cache(maxsize=8)
+def _matches(text: str) -> list[re.Match[str]]:
+    """The names, marks, comments and strings of a text, which is asked several times for one answer."""
+    return list(_WORDS.finditer(text))
+
+
 def words(text: str) -> Iterator[Word]:
     """Every name in the text outside of comments and strings."""
-    for match in _WORDS.finditer(text):
+    for match in _matches(text):
         if match["path"] is not None:
             yield from _words_of(match)
 
@@ -120,7 +127,7 @@ def definitions(text: str) -> Iterator[Definition]:
     found: list[Definition | None] = []
     stack: list[tuple[int, tuple[str, ...]]] = []
     head, last = _Head(), None
-    for match in _WORDS.finditer(text):
+    for match in _matches(text):
         mark = match["mark"]
         if match["path"] is not None:
             if head.colon is None and not head.depth and head.name is not None:
@@ -162,10 +169,11 @@ def _last_step(text: str, path: tuple[int, int]) -> tuple[int, int]:
 
 def word_at(text: str, offset: int) -> Word | None:
     """The name at an offset, or right before it."""
-    for match in _WORDS.finditer(text):
+    found = _matches(text)
+    for match in found[bisect_left(found, offset, key=re.Match.end) :]:
         if match.start() > offset:
             return None
-        if match.end() >= offset and match["path"] is not None:
+        if match["path"] is not None:
             return next((word for word in _words_of(match) if word.start <= offset <= word.end), None)
     return None
 
@@ -174,7 +182,7 @@ def heads(text: str, offset: int) -> list[str]:
     """The heads of the blocks around an offset, from the outermost: the text of each since the item before it."""
     begin = 0
     stack: list[str] = []
-    for match in _WORDS.finditer(text):
+    for match in _matches(text):
         if match.start() >= offset:
             break
         mark = match["mark"]
