@@ -41,7 +41,7 @@ class BodyElement(Element):
     """A rigid body, or the world."""
 
     mass = InertialField[float | None](not_negative)
-    """Mass in kg; None = unspecified, or computed from the shapes."""
+    """Mass in kg; where the file leaves it to its shapes, what the engine of its format computes. None = unspecified."""
     com = InertialField[Vec3](None)
     """Centre of mass in m, in the body's frame; None without an inertial."""
     tensor = TensorField[Tensor | None](None)

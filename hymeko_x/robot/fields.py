@@ -63,18 +63,24 @@ class PartField(Generic[T]):
 
 
 class InertialField(PartField[T]):
-    """A field of a body's inertial; None where the body has none."""
+    """A field of a body's inertial, or of that which the engine of the robot's format computes; None where there is neither."""
 
     def __get__(self, element: Any, owner: type) -> Any:
         if element is None:
             return self
-        inertial = element.part.inertial
+        inertial = self._inertial(element)
         return None if inertial is None else getattr(inertial, self.name)
 
     def carrier(self, element: Element) -> Inertial:
         """The inertial; that which the engine of the robot's format computes where the body has none."""
-        found: Body = element.part
-        return found.inertial or element.draft.computed_inertial(element.id) or Inertial()
+        return self._inertial(element) or Inertial()
+
+    @staticmethod
+    def _inertial(element: Element) -> Inertial | None:
+        part = element.part
+        if not isinstance(part, Body):
+            return None
+        return part.inertial or element.draft.computed_inertial(element.id)
 
     def store(self, element: Element, carrier: Inertial) -> None:
         """Put the changed inertial back."""

@@ -12,11 +12,13 @@ from hymeko_x.assets.pack import is_of_package
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism, Provenance
 from hymeko_x.robot.errors import EditError
+from hymeko_x.robot.parting import ASSETS
 from hymeko_x.source import ManyFiles
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from hymeko_x.ir.mechanism import RobotEdge
     from hymeko_x.ir.parts import Mesh, Texture, VertexPart
     from hymeko_x.source import Files
 
@@ -34,8 +36,11 @@ def provenance_of(host: Mechanism, part: Mechanism) -> Provenance:
 
 
 def merged(host: Mechanism, part: Mechanism, source: Provenance) -> Mechanism:
-    """All elements and side tables of both. Raises: EditError when an element of both has the same id."""
-    taken = {*host.graph.vertices, *host.graph.edges}
+    """All elements and side tables of both; equal materials, meshes and textures are shared.
+
+    Raises: EditError when another element of both has the same id.
+    """
+    taken = {*host.graph.vertices, *host.graph.edges} - _shared(host, part)
     clash = next((key for table in (part.graph.vertices, part.graph.edges) for key in table if key in taken and key != WORLD), None)
     if clash is not None:
         raise EditError(f"{clash} is in robot '{host.name}' and in robot '{part.name}'; give a prefix")
@@ -54,6 +59,25 @@ def merged(host: Mechanism, part: Mechanism, source: Provenance) -> Mechanism:
         originals={**part.originals, **host.originals},
         stored={**host.stored, **part.stored},
         source=source,
+    )
+
+
+def _shared(host: Mechanism, part: Mechanism) -> set[Id]:
+    """The assets that both have, with the same name, value, extras and layers."""
+    found = set()
+    for one, other in ((host.graph.vertices, part.graph.vertices), (host.graph.edges, part.graph.edges)):
+        for key in other:
+            if key.kind in ASSETS and one.get(key) == other[key] and host.extras.get(key) == part.extras.get(key):
+                found.add(key)
+    return {key for key in found if _layers(host, key) == _layers(part, key)}
+
+
+def _layers(mechanism: Mechanism, key: Id) -> list[RobotEdge]:
+    """What a material is made of."""
+    return (
+        [mechanism.graph.edges[edge] for edge, _, _ in mechanism.graph.edges_at(key) if edge.kind == "layer"]
+        if key.kind == "material"
+        else []
     )
 
 

@@ -62,7 +62,8 @@ class _Sides:
         if key.kind == "stance":
             return self._is_about(key)
         if key in self._graph.vertices:
-            ends = [edge for edge, _, _ in self._graph.edges_at(key) if edge.kind in _PLACING]
+            placing = {"mount"} if key.kind == "frame" else _PLACING  # what a site is measured or driven by does not place it
+            ends = [edge for edge, _, _ in self._graph.edges_at(key) if edge.kind in placing]
         else:
             skipped = ASSETS | (_THINGS if key.kind in _PLACING else frozenset({"pose"}))
             arcs = self._graph.edges[key].arcs

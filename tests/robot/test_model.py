@@ -50,6 +50,13 @@ def test_the_text_of_a_robot_is_one_line_or_a_tree_of_at_most_forty() -> None:
 def test_the_mass_counts_what_the_engine_computes_from_shapes() -> None:
     assert arm().mass == pytest.approx(7)
     assert arm().mass == pytest.approx(sum(arm().to_mujoco().body_mass))
+    upper = arm().bodies["upper"]
+    assert upper.part.inertial is None
+    assert upper.mass == pytest.approx(arm().to_mujoco().body("upper").mass[0])
+    with arm().edit() as e:
+        e.bodies["upper"].mass *= 2
+    assert e.robot.mass == pytest.approx(7 + upper.mass)
+    assert hx.loads("<robot name='r'><link name='l'/></robot>", "urdf").bodies["l"].mass is None
 
 
 def test_forward_kinematics_is_that_of_mujoco() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 import hymeko_x as hx
 from tests.robot.robots import ARM, HAND, arm, check_same_model
 
@@ -82,3 +84,32 @@ def test_a_part_takes_along_what_only_its_format_has() -> None:
     rest, back = whole.detach("hand/")
     assert [found.to_mujoco().nnumeric for found in (whole, rest, back)] == [1, 0, 1]
     assert back.to_mujoco().numeric("grasp").data.tolist() == [1, 2]
+
+
+SENSED = """<mujoco model="sensed"><asset><material name="grey" rgba=".5 .5 .5 1"/></asset>
+<worldbody><body name="base"><geom size=".1" mass="1" material="grey"/>
+<body name="finger" pos="0 0 .2"><joint name="j"/><geom size=".1" mass="1" material="grey"/>
+<site name="tip" size=".02"/><camera name="eye"/></body></body></worldbody>
+<actuator><motor name="push" site="tip" gear="1 0 0 0 0 0"/></actuator><sensor><touch name="felt" site="tip"/></sensor></mujoco>"""
+
+
+def test_a_part_takes_along_sites_with_sensors_and_actuators() -> None:
+    rest, part = hx.loads(SENSED, "mjcf").detach("finger")
+    assert ([*part.frames], [*part.sensors], [*part.actuators], [*part.cameras]) == (["tip"], ["felt"], ["push"], ["eye"])
+    assert not [*rest.frames, *rest.sensors, *rest.actuators, *rest.cameras]
+    model = part.to_mujoco()
+    assert (model.nsensor, model.nu, model.nsite) == (1, 1, 1)
+    assert "sensor" not in hx.dumps(rest, "mjcf")
+
+
+def test_what_was_detached_without_a_prefix_goes_back_on_although_both_have_its_materials() -> None:
+    whole = hx.loads(SENSED, "mjcf")
+    joint = whole.joints["j"]
+    rest, part = whole.detach("finger")
+    again = rest.attach(part, at="base", joint=joint.part, pose=joint.pose)
+    assert [*again.materials] == ["grey"]
+    assert {str(item.element) for item in hx.diff(again, whole)} == {"joint 'finger_joint'", "joint 'j'"}
+    with part.edit() as e:
+        e.materials["grey"].rgba = (1, 0, 0, 1)
+    with pytest.raises(hx.EditError, match="material 'grey' is in robot 'sensed' and in robot 'finger'; give a prefix"):
+        rest.attach(e.robot, at="base")
