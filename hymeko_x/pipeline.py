@@ -333,7 +333,7 @@ def flattened(mechanism: Mechanism) -> Mechanism:
     native = formats.native_format(mechanism)
     if native is None or native.flattens is None:
         return mechanism
-    found: Mechanism = formats.loaded(native.flattens)(mechanism, writer(native)(mechanism, Options(), Report()).main)
+    found: Mechanism = formats.loaded(native.flattens)(mechanism, lambda named: writer(native)(named, Options(), Report()).main)
     return found
 
 

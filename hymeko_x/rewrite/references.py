@@ -13,7 +13,7 @@ from hymeko_x.ir.parts import Camera, Light
 from hymeko_x.xml.references import with_new_names_in_fragments
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Mapping
+    from collections.abc import Callable, Container, Iterable, Mapping
 
     from hymeko_x.ir.mechanism import Extra, Mechanism
 
@@ -63,6 +63,17 @@ def names_of(extra: Extra) -> tuple[tuple[str, str], ...]:
     if changer is not None:
         changer(extra, note, is_of_whole=False)
     return tuple(found)
+
+
+def named_in(extras: Iterable[Extra]) -> set[Id]:
+    """The elements that extras name."""
+    return {Id(kind, name) for extra in extras for kind, name in names_of(extra) if kind}
+
+
+def targets(mechanism: Mechanism) -> set[Id]:
+    """What cameras and lights are aimed at, or show."""
+    parts = (part for part in mechanism.graph.vertices.values() if isinstance(part, Camera | Light))
+    return {Id(_TARGETS[name], str(value)) for part in parts for name, value in part.parameters if name in _TARGETS}
 
 
 def _changers() -> Mapping[str, Callable[..., Any]]:

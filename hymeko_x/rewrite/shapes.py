@@ -107,7 +107,8 @@ def keep_planes_static(mechanism: Mechanism, context: Context) -> Mechanism:
         context.report.note(
             codes.REWRITTEN, f"{key} is a plane on a body that moves; it is written as a thin box", mechanism.origin(key), element=str(key)
         )
-    return mechanism.replace(edges=changed, without=gone)
+    pairs = [edge for key in gone for edge, _, _ in mechanism.graph.edges_at(key) if edge.kind == "contact"]
+    return mechanism.replace(edges=changed, without=[*gone, *pairs])
 
 
 def name_shapes_once(mechanism: Mechanism, context: Context) -> Mechanism:

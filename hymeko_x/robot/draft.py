@@ -238,7 +238,9 @@ class Draft:
         return found
 
     def _is_last(self, arc: RobotArc, edge: Id) -> bool:
-        return all(other == edge for other in self._at.get(arc.target, ()))
+        """Whether nothing else needs what the arc leads to; what a site is measured or driven by does not."""
+        others = (other for other in self._at.get(arc.target, ()) if other != edge)
+        return all(arc.target.kind == "frame" and other.kind != "mount" for other in others)
 
     def _unlink(self, key: Id) -> None:
         for arc in self.edges[key].arcs:

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from hymeko_x import pipeline
 from hymeko_x.ir.kinematics import below
-from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, pose_weight
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism, pose_weight
 from hymeko_x.ir.parts import Body, Contact, Inertial
 from hymeko_x.ir.solids import Solid, joined
 from hymeko_x.ir.values import IDENTITY, Pose, apply, compose, rotate_tensor
+from hymeko_x.rewrite.references import named_in, targets
 from hymeko_x.robot.errors import unknown_name
 
 if TYPE_CHECKING:
@@ -26,7 +28,8 @@ Places = dict[Id, tuple[Id, Pose]]
 def merge_fixed(mechanism: Mechanism, keep: Iterable[str]) -> Mechanism:
     """Every body that a joint without dofs attaches to another body becomes a part of that one, except for those to keep.
 
-    Shapes, frames, joints and relations move along; inertials are added. What is fixed to the world stays a body.
+    Shapes, frames, joints and relations move along; inertials are added. What is fixed to the world stays a body, and so do bodies that
+    a camera, a light or an extra of the whole names. Elements of what is merged have all that they inherited from classes.
 
     Raises: KeyError for a body to keep that is not there.
     """
@@ -34,9 +37,10 @@ def merge_fixed(mechanism: Mechanism, keep: Iterable[str]) -> Mechanism:
     for key in kept:
         if key not in mechanism.graph.vertices:
             raise unknown_name("body", key.name, [body.name for body, _ in mechanism.vertices(Body)])
-    places = _places(mechanism, frozenset(kept))
+    places = _places(mechanism, frozenset(kept) | targets(mechanism) | named_in(mechanism.extras.get(ROOT, ())))
     if not places:
         return mechanism
+    mechanism = pipeline.flattened(mechanism)
     joints = {mechanism.parent_joint[key].id for key in places}
     edges = {key: _moved(edge, places) for key, edge in mechanism.graph.edges.items() if any(arc.target in places for arc in edge.arcs)}
     idle = {

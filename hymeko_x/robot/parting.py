@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Body
+from hymeko_x.rewrite.references import named_in
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism
@@ -35,10 +36,17 @@ def part_of(mechanism: Mechanism, bodies: set[Id]) -> set[Id]:
     graph = mechanism.graph
     inside = {key for table in (graph.vertices, graph.edges) for key in table if key.kind not in ASSETS and sides.of(key)}
     used = {arc.target for key in inside & graph.edges.keys() for arc in graph.edges[key].arcs if arc.target.kind in ASSETS}
+    used |= _of_whole(mechanism)
     for key, edge in graph.edges.items():
         if key.kind == "layer" and any(arc.target in used for arc in edge.arcs):
             used |= {key, *(arc.target for arc in edge.arcs)}
     return inside | used
+
+
+def _of_whole(mechanism: Mechanism) -> set[Id]:
+    """The assets that extras of the whole name which name nothing else, such as default classes."""
+    named = (named_in([extra]) for extra in mechanism.extras.get(ROOT, ()))
+    return {key for keys in named if all(key.kind in ASSETS for key in keys) for key in keys if key in mechanism.graph.vertices}
 
 
 class _Sides:
