@@ -57,10 +57,8 @@ def _side(word: str) -> str:
 
 def common_words(names: Sequence[str]) -> str:
     """The words that all names share, in the order of the first: ``hip_joint`` of ``left_hip_joint`` and ``right_hip_joint``."""
-    split = [words_of(name) for name in names]
-    shared = set(split[0]).intersection(*split[1:])
-    kept = [word for word in split[0] if word in shared]
-    return "_".join(kept) if any(len(word) > 2 for word in kept) else ""
+    shared = _shared([words_of(name) for name in names])
+    return shared if any(len(word) > 2 for word in shared.split("_")) else ""
 
 
 def words_of_all(names: Iterable[str]) -> frozenset[str]:
@@ -71,7 +69,11 @@ def words_of_all(names: Iterable[str]) -> frozenset[str]:
 
 def meaning(names: Sequence[str], plain: Collection[str] = ()) -> str:
     """What all of these are, by the telling words that their names share; empty for none."""
-    split = [telling_words(name, plain) for name in names]
+    return _shared([telling_words(name, plain) for name in names])
+
+
+def _shared(split: Sequence[Sequence[str]]) -> str:
+    """The words that all of these have, in the order of the first."""
     shared = set(split[0]).intersection(*split[1:])
     return "_".join([word for word in split[0] if word in shared])
 
@@ -81,9 +83,10 @@ def by_meaning(names: Sequence[str], least: int, plain: Collection[str] = ()) ->
 
     A name is in one group at most; the largest groups come first.
     """
-    if len(names) >= least and (found := meaning(names, plain)):
+    split = [telling_words(name, plain) for name in names]
+    if len(names) >= least and (found := _shared(split)):
         return [(found, list(range(len(names))))]
-    left = {place: telling_words(name, plain) for place, name in enumerate(names)}
+    left = dict(enumerate(split))
     groups: list[tuple[str, list[int]]] = []
     while True:
         counts = Counter(word for words in left.values() for word in words)
@@ -91,5 +94,5 @@ def by_meaning(names: Sequence[str], least: int, plain: Collection[str] = ()) ->
         if counts[word] < least:
             return groups
         places = [place for place, words in left.items() if word in words]
-        groups.append((meaning([names[place] for place in places], plain), places))
+        groups.append((_shared([split[place] for place in places]), places))
         left = {place: words for place, words in left.items() if word not in words}

@@ -29,10 +29,13 @@ def mount_sensors_of_fragments(mechanism: Mechanism, context: Context) -> Mechan
 
     What the robot has by the same name already is not added. The fragments themselves stay, as do sensors that are IMUs.
     """
+    mounted = [*_mounted(mechanism)]
+    if not mounted:
+        return mechanism
     vertices: dict[Id, VertexPart] = {}
     edges: dict[Id, RobotEdge] = {}
     names = names_in_use(mechanism)
-    for link, name, pose, part in _mounted(mechanism):
+    for link, name, pose, part in mounted:
         body, key = Id("body", link), Id("camera" if isinstance(part, Camera) else "frame", name)
         if body not in mechanism.graph.vertices or key in mechanism.graph.vertices or key in vertices:
             continue
@@ -68,8 +71,9 @@ def held(mechanism: Mechanism) -> list[str]:
 
 
 def _mounted(mechanism: Mechanism) -> Iterator[tuple[str, str, Pose, Camera | Frame]]:
-    readers = [formats.loaded(row.fragment_mounts) for row in formats.FORMATS if row.fragment_mounts is not None]
-    for extra in mechanism.extras.get(ROOT, ()):
+    own = mechanism.extras.get(ROOT, ())
+    readers = [formats.loaded(row.fragment_mounts) for row in formats.FORMATS if row.fragment_mounts is not None] if own else []
+    for extra in own:
         for read in readers:
             yield from read(extra.text)
     for views in mechanism.mounts.values():

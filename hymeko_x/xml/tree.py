@@ -29,7 +29,7 @@ INSTRUCTION_NODE = "#instruction"
 MAX_DEPTH = 2048
 
 
-class Node:
+class Node(Struct, eq=False):
     """An XML element whose attributes, children and text are taken out one by one.
 
     ``owner`` is the element of the mechanism that the node became; a node without one belongs to its parent's.
@@ -37,22 +37,18 @@ class Node:
     of children before its text.
     """
 
-    __slots__ = ("attributes", "children", "end", "file", "line", "owner", "parent", "start", "tag", "taken", "text", "text_index")
-
-    def __init__(
-        self, tag: str, attributes: dict[str, str], parent: Node | None = None, file: str = "", line: int | None = None, start: int = 0
-    ) -> None:
-        self.tag = tag
-        self.attributes = attributes
-        self.parent = parent
-        self.file = file
-        self.line = line
-        self.start = self.end = start
-        self.children: list[Node] = []
-        self.taken = False
-        self.owner: Id | None = None
-        self.text: str | None = None
-        self.text_index = 0
+    tag: str
+    attributes: dict[str, str]
+    parent: Node | None = None
+    file: str = ""
+    line: int | None = None
+    start: int = 0
+    end: int = 0
+    children: list[Node] = []
+    taken: bool = False
+    owner: Id | None = None
+    text: str | None = None
+    text_index: int = 0
 
     @property
     def origin(self) -> Origin:
@@ -241,11 +237,15 @@ class TreeBuilder:
         """The handlers of elements and text, which are called for every element: closures are quicker than methods."""
         parser, file, lines, stack, make = self._parser, self._file, self._lines, self._open, Node
         most = (self._deepest or sys.maxsize - 1) + 1
+        ends_in, end_of_line = self._data.count, b"\n" if b"\n" in self._data else b"\r"
+        line, counted = 1, 0
 
         def start(tag: str, attributes: dict[str, str]) -> None:
-            around = stack[-1]
-            line = parser.CurrentLineNumber if lines is None else next(lines)
-            node = make(tag, attributes, around, file, line, parser.CurrentByteIndex)
+            nonlocal line, counted
+            around, here = stack[-1], parser.CurrentByteIndex
+            line = line + ends_in(end_of_line, counted, here) if lines is None else next(lines)
+            counted = here
+            node = make(tag, attributes, around, file, line, here)
             around.children.append(node)
             stack.append(node)
             if len(stack) > most:

@@ -140,17 +140,15 @@ def _leave_to_class(element: Tag, own: Mapping[str, str]) -> None:
 
 def _share_among_some(tag: str, own_class: str | None, group: list[Tag], defaults: Defaults) -> None:
     """Classes for sets of attributes that several elements share, with everything else that those have in common."""
-    plain = words_of_all(_names(group)) if len(group) > _FEWEST else frozenset[str]()
     start = len(defaults.classes)
-    for shared in share([_reasons(element) for element in group], _COSTS if own_class is None else _REFINING):
+    found = share([_reasons(element) for element in group], _COSTS if own_class is None else _REFINING)
+    plain = words_of_all(_names(group)) if found and len(group) > _FEWEST else frozenset[str]()
+    for shared in found:
         members = [group[member] for member in shared.members]
         for words, places in by_meaning(_names(members), _FEWEST, plain):
             _make_class(tag, own_class, words, [members[place] for place in places], defaults)
     order = {name: place for place, element in reversed([*enumerate(group)]) if (name := element.attributes.get("class"))}
     defaults.classes[start:] = sorted(defaults.classes[start:], key=lambda found: order.get(found.name, -1))
-    for element in group:
-        first: dict[str, str] = {name: element.attributes[name] for name in ("name", "class") if name in element.attributes}
-        element.attributes = {**first, **element.attributes}
 
 
 def _names(elements: list[Tag]) -> list[str]:
@@ -169,7 +167,9 @@ def _make_class(tag: str, own_class: str | None, words: str, members: list[Tag],
     defaults.classes.append(Class(name, tag, own, around))
     for element in members:
         _leave_to_class(element, own)
-        element.attributes["class"] = name
+        element.attributes.pop("class", None)
+        named = {"name": element.attributes["name"]} if "name" in element.attributes else {}
+        element.attributes = {**named, "class": name, **element.attributes}
 
 
 def _reasons(element: Tag) -> Row:

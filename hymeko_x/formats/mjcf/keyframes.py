@@ -43,6 +43,8 @@ def has_keyframes(mechanism: Mechanism) -> bool:
 def keys_of(mechanism: Mechanism) -> list[Key]:
     """The keyframes of a mechanism from MJCF; one whose numbers do not fit its joints and actuators is left out."""
     sections = [parse_text(extra.text) for extra in mechanism.extras.get(ROOT, ()) if is_keyframes(extra)]
+    if not sections:
+        return []
     slots = {name: list(_slots(mechanism, name)) for name in (*_BY_JOINT, "ctrl")}
     keys = [_key(dict(node.attributes), slots) for section in sections for node in section.children if node.tag == "key"]
     return [key for key in keys if key is not None]
@@ -71,13 +73,15 @@ def with_keys(mechanism: Mechanism, keys: Sequence[Key]) -> Mechanism:
 
 def with_poses(mechanism: Mechanism) -> Mechanism:
     """The mechanism with its named poses as keyframes; a joint that a pose has no fitting numbers of is as it is without one."""
+    stances = [(pose, arcs) for _, _, arcs in mechanism.edges(Stance) if (pose := end_of(arcs, 1)) is not None]
+    if not stances:
+        return mechanism
     own = keys_of(mechanism)
     known = {key.attributes.get("name") for key in own}
     widths = {key: len(rest) for key, rest in _slots(mechanism, "qpos")}
     new = []
-    for _, _, arcs in mechanism.edges(Stance):
-        pose = end_of(arcs, 1)
-        if pose is not None and pose.name not in known:
+    for pose, arcs in stances:
+        if pose.name not in known:
             values = {arc.target: numbers_weight(arc) for arc in arcs if arc.sign == 0}
             fitting = {key: found for key, found in values.items() if widths.get(key) == len(found)}
             new.append(Key({"name": pose.name}, {("qpos", key): _in_world(mechanism, key, found) for key, found in fitting.items()}))
