@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from heapq import nsmallest
-from itertools import combinations
+from itertools import chain, combinations
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
@@ -84,7 +84,7 @@ def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], lis
 
 def _most_saved(rows: list[Row], costs: Costs) -> int:
     """More than any one set can save before its definition is paid: each field is written once instead of every time."""
-    counts = Counter(pair for row in rows for pair in row)
+    counts = Counter(chain.from_iterable(rows))
     return sum([(count - 1) * (len(name) + len(text) + costs.field) for (name, text), count in counts.items() if count > 1])
 
 

@@ -14,6 +14,7 @@ _KINDS = "joint link body geom shape mesh part visual collision frame robot moto
 _PLAIN: frozenset[str] = frozenset(f"{_SIDES} {_KINDS}".split())
 """Words that say on which side an element is, or of which kind; they tell nothing of what it is."""
 
+_BETWEEN_WORDS = re.compile(r"[\W_\d]+")
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _SIDE = re.compile(r"(?:left|right)(?=[a-z]{3})", re.IGNORECASE)
 _LIMBS = {
@@ -26,7 +27,7 @@ _LIMB_OF = {word: limb for limb, words in _LIMBS.items() for word in words.split
 
 def words_of(name: str) -> list[str]:
     """The words of a name in order, each once: those between signs and digits, as they are written."""
-    return list(dict.fromkeys(word for word in re.split(r"[\W_\d]+", name) if word))
+    return list(dict.fromkeys([word for word in _BETWEEN_WORDS.split(name) if word]))
 
 
 def telling_words(name: str, plain: Collection[str] = ()) -> list[str]:

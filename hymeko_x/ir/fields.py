@@ -48,6 +48,8 @@ class Noted(Struct, frozen=True, forbid_unknown_fields=True):
     uncompared = ("written",)  # not annotated: it is no field
 
     def __eq__(self, other: object) -> bool:
+        if self is other:
+            return True
         if other.__class__ is not self.__class__:
             return NotImplemented
         compared = layout_of(self.__class__).compared  # type: ignore[union-attr]

@@ -353,9 +353,17 @@ def number_text(value: float) -> str:
 
 
 def numbers_text(values: tuple[float, ...]) -> str:
-    """Numbers separated by blanks, each as :func:`number_text` writes it."""
-    text = f"{shortest_texts(values)},".replace(".0,", ",")[:-1].replace(",", " ")
-    return _trimmed(text) if "e" in text else text
+    """Numbers separated by blanks, each as :func:`number_text` writes it.
+
+    A writer of JSON finds the digits in a tenth of the time; where it would not write them as Python does, Python is asked.
+    """
+    try:
+        text = encode(values)
+    except TypeError:  # a number that is no plain one of Python
+        return " ".join(map(number_text, values))
+    if b"0.0000" in text or b"null" in text:
+        return " ".join(map(number_text, values))
+    return text[1:-1].decode().replace(".0,", " ").replace(",", " ").removesuffix(".0")
 
 
 def _trimmed(text: str) -> str:
@@ -366,25 +374,6 @@ def _trimmed(text: str) -> str:
 def said_numbers(values: Mapping[str, float]) -> dict[str, str]:
     """What :func:`number_text` writes of each, sooner than one by one."""
     return dict(zip(values, numbers_text(tuple(values.values())).split(" "), strict=True)) if values else {}
-
-
-def shortest_texts(values: tuple[float, ...]) -> str:
-    """The ``repr`` of each number, with commas between them: the fewest digits that read back to the same double.
-
-    A writer of JSON finds them in a tenth of the time; where it would not write them as Python does, Python is asked.
-    """
-    try:
-        text = encode(values)[1:-1].decode()
-    except TypeError:  # a number that is no plain one of Python
-        return ",".join([repr(float(value)) for value in values])
-    if text.count(".") == len(values) and "e" not in text and "0.0000" not in text:
-        return text
-    return ",".join(
-        [
-            digits if "." in digits and "e" not in digits and "0.0000" not in digits else repr(float(value))
-            for digits, value in zip(text.split(","), values, strict=True)
-        ]
-    )
 
 
 def are_numbers(values: tuple[object, ...]) -> bool:

@@ -74,6 +74,8 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
         from hymeko_x.backends.mjcf.references import pack_native
 
         return pack_native(mechanism, shelf, files, report)
+    if not any(mechanism.assets()):
+        return mechanism
     run = _Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
     _pack_textures(run)
     _pack_meshes(run)

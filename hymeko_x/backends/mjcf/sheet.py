@@ -134,7 +134,7 @@ class MjcfSheet(Struct):
         groups: tuple[Group, ...],
         base: Mapping[str, str],
         notations: Mapping[str, str],
-        kept: Mapping[str, str],
+        kept: dict[str, str],
         prefix: str = "",
     ) -> dict[str, str]:
         """The attributes of these values that the class does not give, as the author wrote them where that still means the same."""
@@ -143,7 +143,7 @@ class MjcfSheet(Struct):
         written = {name.removeprefix(start): text for name, text in notations.items() if name.startswith(start)} if notations else {}
         for group, inherited in self.inherited.of(groups, base, self.settings):
             value = values[group.key]
-            context = _chosen(kept, group.needs) | _chosen(found, group.needs) if group.needs else None
+            context = _chosen(kept | found, group.needs) if group.needs and (kept or found) else None
             below = {**base, **context} if context else base
             noted = _chosen(written, group.names) if written else None
             if noted and self._means(group, merge(below, noted), value):

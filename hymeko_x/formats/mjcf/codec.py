@@ -90,9 +90,10 @@ class InheritedValues:
     def of(self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
         """Each group with its value for the attributes ``base`` that the class gives; REFUSED where MuJoCo refuses them."""
         place = groups, id(base) if base else 0
-        if place not in self._known:
-            self._known[place] = tuple([(group, _value_of(group, base, settings)) for group in groups])
-        return self._known[place]
+        found = self._known.get(place)
+        if found is None:
+            found = self._known[place] = tuple([(group, _value_of(group, base, settings)) for group in groups])
+        return found
 
 
 def _value_of(group: Group, base: Mapping[str, str], settings: Settings) -> Any:

@@ -178,8 +178,8 @@ class MjcfBuilder(Builder):
     def finish(self, name: str) -> Mechanism:
         """The finished mechanism."""
         found = self.build(name, Provenance(words.NAME, words.VERSION, self.file))
-        order = noted_order(found, [key for key, _ in found.vertices(Mesh)])
-        if order:
+        meshes = [key for key, _ in found.vertices(Mesh)]
+        if meshes and (order := noted_order(found, meshes)):
             self.note(ROOT, MESHES, order)  # the mechanism has the builder's notations
         return found
 
