@@ -83,9 +83,10 @@ def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], lis
 
 
 def _most_saved(rows: list[Row], costs: Costs) -> int:
-    """More than any one set can save before its definition is paid: each field is written once instead of every time."""
+    """More than any one set can save before its definition is paid: all fields of a row, each written once instead of every time."""
     counts = Counter(chain.from_iterable(rows))
-    return sum([(count - 1) * (len(name) + len(text) + costs.field) for (name, text), count in counts.items() if count > 1])
+    saved = {pair: (count - 1) * (len(pair[0]) + len(pair[1]) + costs.field) for pair, count in counts.items()}
+    return max([sum([saved[pair] for pair in row]) for row in rows])
 
 
 def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:

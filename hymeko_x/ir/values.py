@@ -349,7 +349,7 @@ def rotation_angle(a: Quat, b: Quat) -> float:
 def number_text(value: float) -> str:
     """The shortest decimal text that reads back to the same double: ``0.1``, ``2``, ``-1e-7``."""
     text = repr(value) if type(value) is float else repr(float(value))
-    return _trimmed(text) if "e" in text else text.removesuffix(".0")
+    return text.replace("e-0", "e-").replace("e+", "e") if "e" in text else text.removesuffix(".0")
 
 
 def numbers_text(values: tuple[float, ...]) -> str:
@@ -361,17 +361,12 @@ def numbers_text(values: tuple[float, ...]) -> str:
         text = encode(values)
     except TypeError:  # a number that is no plain one of Python
         return " ".join(map(number_text, values))
-    if b"0.0000" in text or b"null" in text:
+    if b"0.0000" in text or text.count(b".") != len(values):
         return " ".join(map(number_text, values))
     return text[1:-1].decode().replace(".0,", " ").replace(",", " ").removesuffix(".0")
 
 
-def _trimmed(text: str) -> str:
-    """Numbers with short exponents: ``repr`` gives them a sign, and two digits at least."""
-    return text.replace("e-0", "e-").replace("e+", "e")
-
-
-def said_numbers(values: Mapping[str, float]) -> dict[str, str]:
+def number_texts(values: Mapping[str, float]) -> dict[str, str]:
     """What :func:`number_text` writes of each, sooner than one by one."""
     return dict(zip(values, numbers_text(tuple(values.values())).split(" "), strict=True)) if values else {}
 

@@ -10,7 +10,7 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind, Joint
-from hymeko_x.ir.values import IDENTITY, X, number_text, numbers_text, plane_axes, said_numbers, unit
+from hymeko_x.ir.values import IDENTITY, X, number_text, number_texts, numbers_text, plane_axes, unit
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def _add_limits(tag: Tag, key: Id, limits: Limits, sheet: UrdfSheet, *, bounded:
     if bounded or limits.effort is not None or limits.velocity is not None:
         none |= {"effort": words.NO_LIMIT_TEXT, "velocity": words.NO_LIMIT_TEXT}
     values = {name: getattr(limits, name) for name in words.LIMITS if bounded or name not in ("lower", "upper")}
-    given = said_numbers({name: value for name, value in values.items() if value is not None})
+    given = number_texts({name: value for name, value in values.items() if value is not None})
     attributes = {name: given.get(name, none.get(name)) for name in words.LIMITS}
     left_out = {name for name in ("lower", "upper") if values.get(name) == 0.0 and sheet.has_habit(key, notations.without(name))}
     if given or none:
@@ -120,7 +120,7 @@ def _add_safety(tag: Tag, key: Id, safety: Safety, sheet: UrdfSheet) -> None:
 
 def _add_calibration(tag: Tag, calibration: Calibration) -> None:
     values = {"rising": calibration.rising, "falling": calibration.falling, "reference_position": calibration.reference}
-    tag.add("calibration", **said_numbers({name: value for name, value in values.items() if value is not None}))
+    tag.add("calibration", **number_texts({name: value for name, value in values.items() if value is not None}))
 
 
 def _add_mimic(tag: Tag, key: Id, sheet: UrdfSheet) -> None:

@@ -9,7 +9,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf.notations import SCALE
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
-from hymeko_x.ir.values import Pose, number_text, numbers_text, rotate_tensor, said_numbers
+from hymeko_x.ir.values import Pose, number_text, number_texts, numbers_text, rotate_tensor
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def _add_inertial(link: Tag, key: Id, inertial: Inertial, sheet: UrdfSheet) -> N
         tag.add("mass", value=number_text(inertial.mass))
     if tensor is not None:
         xx, yy, zz, xy, xz, yz = tensor
-        tag.add("inertia", **said_numbers({"ixx": xx, "ixy": xy, "ixz": xz, "iyy": yy, "iyz": yz, "izz": zz}))
+        tag.add("inertia", **number_texts({"ixx": xx, "ixy": xy, "ixz": xz, "iyy": yy, "iyz": yz, "izz": zz}))
 
 
 def _as_written(inertial: Inertial) -> tuple[Pose, Tensor | None]:

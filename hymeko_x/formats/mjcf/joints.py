@@ -9,6 +9,7 @@ from hymeko_x.formats.mjcf.codec import (
     Group,
     Settings,
     angle_text,
+    degrees_text,
     first_real,
     numbers_of,
     radians,
@@ -122,7 +123,7 @@ def span(name: str, flag: str, *, angular: bool = False) -> Group:
         if found is None:
             return {flag: "false"}
         degree = angular and settings.degree and kind is not DofKind.SLIDE
-        attributes = {name: f"{angle_text(found[0], degree)} {angle_text(found[1], degree)}"}
+        attributes = {name: f"{degrees_text(found[0])} {degrees_text(found[1])}" if degree else numbers_text(found)}
         return attributes if settings.autolimits else {flag: "true", **attributes}
 
     def seen(attributes: Mapping[str, str], settings: Settings) -> Any:
