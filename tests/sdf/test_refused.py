@@ -68,6 +68,9 @@ RULES = {
     "an inertia that no body has": (visual(_INERTIA.format(1, 2.1)), "HX316"),
     "a pose of words": (model('<link name="a"><pose>bad 0 0 0 0 0</pose></link>'), "HX020"),
     "a colour of words": (visual(f'<visual name="v">{BALL}<material><diffuse>red 0 0 1</diffuse></material></visual>'), "HX020"),
+    "a number of words in what is kept as written": (visual("<velocity_decay><linear>bad</linear></velocity_decay>"), "HX020"),
+    "two numbers for a vector": (world(f"{PART}<wind><linear_velocity>1 2</linear_velocity></wind>"), "HX020"),
+    "a gravity of words": (world(f"{PART}<gravity>down</gravity>"), "HX020"),
     "a frame of a pose that is not there": (model('<link name="a"><pose relative_to="x"/></link>'), "HX040"),
     "a frame of the only model that is not there": (model(f'<pose relative_to="x"/>{LINK}'), "HX040"),
     "frames in a circle": (

@@ -12,7 +12,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.frontends.sdf.builder import Model, SdfBuilder, TextsUnread
-from hymeko_x.frontends.sdf.checks import check_models
+from hymeko_x.frontends.sdf.checks import check_models, check_numbers
 from hymeko_x.frontends.sdf.gearboxes import read_gearboxes
 from hymeko_x.frontends.sdf.include import expand_includes
 from hymeko_x.frontends.sdf.joints import read_joint
@@ -60,7 +60,7 @@ def read(source: Source, report: Report) -> Reading:
     name = _read_models(root, world, source, builder)
     for child in root.children:
         if child.taken:
-            builder.unread.close(child)
+            check_numbers(builder.unread.close(child), builder)
     mechanism = builder.finish(name, extras_around(document, words.FORMAT), source.name, version)
     return Reading(with_world_link_as_world(mechanism), "".join(carried))
 

@@ -64,6 +64,7 @@ class SdfBuilder(Builder):
     moves_with: dict[Id, Id | None] = field(default_factory=dict)
     gearboxes: list[tuple[Node, Model]] = field(default_factory=list)
     left: set[Id] = field(default_factory=set)
+    bad_numbers: set[int] = field(default_factory=set)
     written: dict[Id, dict[str, str]] = field(default_factory=dict)
 
     # ---- diagnostics -----------------------------------------------------------------------------------------------------
@@ -150,6 +151,7 @@ class SdfBuilder(Builder):
             value = codec.read(text)
         except BadText as error:
             node.leave(child)
+            self.bad_numbers.add(child.start)
             problem = f"<{child.tag}> is '{text[:60]}', expected {error}"
             self.error(codes.BAD_NUMBER, child, f"{node.subject}: {problem}; the default is used, and the text is kept as written")
             return default

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import sdf as words
+from hymeko_x.formats.sdf.numbers import LEAST_NUMBERS, LEAST_NUMBERS_IN
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from hymeko_x.diagnostics import Report
+    from hymeko_x.frontends.sdf.builder import SdfBuilder
     from hymeko_x.xml.tree import Node
 
 _CONTENT = ("link", "model", "include")
@@ -18,6 +23,8 @@ _NO_REFERENCES = ("visual", "collision", "sensor", "light")
 """Named elements that no other one refers to; the readers of the others report reserved names."""
 _RENAMED = ("link", "joint", "frame", "model")
 """Elements that get another name where one of their own kind has it, which their readers report."""
+_BEGINS_AS_NUMBER = re.compile(r"[+-]?(?:\.?\d|inf|nan)", re.IGNORECASE)
+"""What libsdformat reads as a number, which may have anything behind it."""
 
 
 def check_models(place: Node, report: Report) -> list[Node]:
@@ -72,3 +79,24 @@ def _check_names(node: Node, report: Report) -> list[Node]:
         both = f"a <{other.tag}> and a <{child.tag}> are" if other.tag != child.tag else f"two <{child.tag}> are"
         report.warn(codes.DUPLICATE_NAME, f"{both} called '{name}', which libsdformat refuses; both keep the name", child.origin)
     return shared
+
+
+# ---- numbers -----------------------------------------------------------------------------------------------------------------
+
+
+def check_numbers(nodes: Iterable[Node], builder: SdfBuilder) -> None:
+    """Report elements that stay as written where SDF has numbers, and that contain none; plugins and elements with a prefix are free."""
+    stack = [child for node in nodes for child in node.unread_children()]
+    while stack:
+        node = stack.pop()
+        if node.tag in _OWN_NAMES or ":" in node.tag:
+            continue
+        stack += [child for child in node.children if child.is_element]
+        found = [] if node.children or node.start in builder.bad_numbers else (node.text or "").split()
+        around = "" if node.parent is None else node.parent.tag
+        least = LEAST_NUMBERS.get(node.tag, 0) or LEAST_NUMBERS_IN.get((around, node.tag), 0)
+        if least and found and (len(found) < least or not all(map(_BEGINS_AS_NUMBER.match, found[:least]))):
+            expected = "a number" if least == 1 else f"{least} numbers"
+            text = " ".join(found)[:60]
+            message = f"{node.subject}: <{node.tag}> is '{text}', expected {expected}; libsdformat refuses it, and it is kept as written"
+            builder.warn(codes.BAD_NUMBER, node, message)
