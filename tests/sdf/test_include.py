@@ -24,7 +24,7 @@ def load(tmp_path: Path, inside: str) -> tuple[hx.Mechanism, list[str]]:
     return robot, [diagnostic.code.id for diagnostic in report if diagnostic.code.id != "HX009"]  # which says that reading went on
 
 
-@pytest.mark.parametrize("uri", ["model://part", "part", "part/part.sdf", "package://part/part.sdf"])
+@pytest.mark.parametrize("uri", ["model://part", "model://part/", "part", "part/", "part/part.sdf", "package://part/part.sdf"])
 def test_a_model_is_found_by_folder_and_by_file(tmp_path: Path, uri: str) -> None:
     robot, codes = load(tmp_path, f"<include><uri>{uri}</uri><name>p</name><pose>1 0 0 0 0 0</pose></include>")
     assert codes == []
@@ -44,6 +44,42 @@ def test_what_is_not_there_is_reported_and_kept(tmp_path: Path, uri: str) -> Non
     robot, codes = load(tmp_path, f"<include><uri>{uri}</uri></include>")
     assert codes == ["HX053"]
     assert any("<include>" in extra.text for extras in robot.extras.values() for extra in extras)
+
+
+def test_a_folder_without_a_config_is_reported(tmp_path: Path) -> None:
+    """Source: libsdformat: Could not find model.config or manifest.xml."""
+    (tmp_path / "bare").mkdir()
+    (tmp_path / "bare" / "model.sdf").write_text(PART, "utf-8")
+    robot, codes = load(tmp_path, "<include><uri>model://bare</uri><name>p</name></include>")
+    assert codes == ["HX045"]
+    assert "p::l" in [key.name for key in robot.graph.vertices]
+
+
+def test_a_placement_frame_without_a_pose_is_reported(tmp_path: Path) -> None:
+    """Source: libsdformat: <pose> is required when specifying the placement_frame element."""
+    _, codes = load(tmp_path, "<include><uri>part</uri><placement_frame>l</placement_frame></include>")
+    assert codes == ["HX045"]
+
+
+def test_what_an_include_says_besides_is_kept_in_its_model(tmp_path: Path) -> None:
+    params = '<experimental:params xmlns:experimental="y"><link element_id="l" action="remove"/></experimental:params>'
+    robot, codes = load(tmp_path, f'<include><uri>part</uri><a:b xmlns:a="x">1</a:b>{params}</include>')
+    assert codes == ["HX027"]
+    texts = [extra.text for extras in robot.extras.values() for extra in extras]
+    assert '<a:b xmlns:a="x">1</a:b>' in texts
+    assert params in texts
+
+
+def test_drake_finds_models_that_included_models_include(tmp_path: Path) -> None:
+    pytest.importorskip("pydrake")
+    outer = '<sdf version="1.9"><model name="outer"><include><uri>model://part/</uri></include></model></sdf>'
+    (tmp_path / "outer").mkdir()
+    (tmp_path / "outer" / "model.config").write_text('<model><sdf version="1.9">model.sdf</sdf></model>', "utf-8")
+    (tmp_path / "outer" / "model.sdf").write_text(outer, "utf-8")
+    robot, codes = load(tmp_path, "<include><uri>model://outer</uri></include>")
+    assert codes == []
+    verdict = hx.verify(tmp_path / "r.sdf", robot, samples=5)
+    assert verdict.is_same, [*verdict.failed, verdict.reason]
 
 
 def test_a_model_that_includes_itself_is_reported(tmp_path: Path) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pytest
+
 import hymeko_x as hx
 from tests.sdf.canonical import canonical
 
@@ -24,6 +26,7 @@ def test_the_pose_of_the_only_model_is_relative_to_a_frame_of_the_world() -> Non
 def test_a_bare_name_is_that_of_a_model_in_the_resource_path(tmp_path: Path) -> None:
     folder = tmp_path / "models" / "part"
     folder.mkdir(parents=True)
+    (folder / "model.config").write_text('<model><sdf version="1.9">model.sdf</sdf></model>', "utf-8")
     (folder / "model.sdf").write_text('<sdf version="1.9"><model name="p"><link name="l"/></model></sdf>', "utf-8")
     (tmp_path / "w.sdf").write_text('<sdf version="1.9"><world name="w"><include><uri>part</uri></include></world></sdf>', "utf-8")
     assert hx.load(tmp_path / "w.sdf", search_path=(tmp_path / "models",)).mechanism.name == "p"
@@ -48,3 +51,11 @@ def test_a_joint_of_a_nested_model_is_as_static_as_the_models_around_it() -> Non
     assert "<joint" not in hx.dumps(hx.loads(around.format("", inner), "sdf"), "mjcf").replace("<freejoint", "")
     assert "<joint" not in hx.dumps(hx.loads(around.format("<static>1</static>", moving), "sdf"), "mjcf")
     assert "<joint" in hx.dumps(hx.loads(around.format("", moving), "sdf"), "mjcf")
+
+
+@pytest.mark.unread("HX045")
+def test_a_world_without_models_is_a_scene() -> None:
+    """libsdformat accepts it; it was an error, and nothing was written."""
+    sun = '<sdf version="1.9"><world name="w"><light name="sun" type="directional"/></world></sdf>'
+    assert '<light name="sun"' in hx.dumps(hx.loads(sun, "sdf"), "sdf")
+    assert "<light" in hx.dumps(hx.loads(sun, "sdf"), "mjcf")

@@ -129,9 +129,16 @@ def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBui
         if node.owner is not None:
             builder.note(node.owner, notations.SHARED, True)
     if not models:
-        builder.report.error(codes.MISSING_PART, "the file has no model; the result has no bodies", root.origin)
+        _report_no_model(root, world, builder.report)
     own = tops[0].take("name") if is_alone else named
     return own or source.stem
+
+
+def _report_no_model(root: Node, world: Node | None, report: Report) -> None:
+    """A scene without models is odd; a file without anything is wrong, and libsdformat refuses it."""
+    is_scene = world is not None or any(child.tag in ("light", "actor") for child in root.children)
+    tell = report.warn if is_scene else report.error
+    tell(codes.MISSING_PART, "the file has no model; the result has no bodies", root.origin)
 
 
 def _read_content(models: list[Model], builder: SdfBuilder) -> None:

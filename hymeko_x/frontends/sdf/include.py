@@ -24,6 +24,10 @@ MOST_BYTES = 256 * 1024 * 1024
 
 _REMOTE = re.compile(r"https?:", re.IGNORECASE)
 _OVERRIDES = ("pose", "static")
+_PARAMS = "experimental:params"
+"""Changes of the included model, by the names of its elements."""
+_OF_INCLUDE = ("uri", "name", "placement_frame")
+"""The children of an <include> that are no elements of the model."""
 _WITH_POSE = ("link", "frame", "model")
 _REFERENCES = (("pose", "relative_to"), ("xyz", "expressed_in"))
 
@@ -98,6 +102,7 @@ def _expand(place: _Place, found: Included) -> list[tuple[Node, tuple[str, tuple
     if model is None:
         return []
     below = [(node, (posixpath.dirname(path), (*place.chain, path))) for node in _includes(model)]
+    _check(place.node, uri, found.report)
     _override(model, place.node)
     parent = place.node.parent
     assert parent is not None
@@ -119,7 +124,7 @@ def _path(uri: str, place: _Place, found: Included) -> str | None:
     if _REMOTE.match(uri):
         problem = "is on the network, and nothing is ever fetched; download it and name its folder with --package"
     elif uri:
-        paths = _paths(uri, place.folder, found)
+        paths = _paths(uri.rstrip("/"), place, found)
         path = next((path for path in paths if path not in place.chain), None)
         if path is not None:
             return path
@@ -129,24 +134,29 @@ def _path(uri: str, place: _Place, found: Included) -> str | None:
     return None
 
 
-def _paths(uri: str, folder: str, found: Included) -> list[str]:
+def _paths(uri: str, place: _Place, found: Included) -> list[str]:
     """The files that a uri in a file of this folder may mean: there, from the main file, or as the name of a model's folder."""
+    folder = place.folder
     known = found.paths.get((uri, folder))
     if known is not None:
         return known
     is_path = ":" not in uri and not uri.startswith("/")
     near = posixpath.join(folder, uri) if folder and is_path else uri
     names = dict.fromkeys((near, uri, f"model://{uri}" if is_path else uri))
-    paths = [path for name in names if (path := found.source.files.find(name) or _of_folder(name, found)) is not None]
+    paths = [path for name in names if (path := found.source.files.find(name) or _of_folder(name, place.node, found)) is not None]
     return found.paths.setdefault((uri, folder), paths)
 
 
-def _of_folder(uri: str, found: Included) -> str | None:
+def _of_folder(uri: str, include: Node, found: Included) -> str | None:
     """The file that the `model.config` of a folder names for the highest version, else its `model.sdf`."""
     files = found.source.files
     config = files.find(f"{uri}/model.config")
     if config is None:
-        return files.find(f"{uri}/model.sdf")
+        path = files.find(f"{uri}/model.sdf")
+        if path is not None:
+            message = f"the folder of '{path}' has no model.config, without which libsdformat does not include it; it is included"
+            found.report.warn(codes.MISSING_PART, message, include.origin)
+        return path
     try:
         root = parse(Source(config, files.read(config)), Report()).root
     except (Refusal, OSError):
@@ -194,8 +204,18 @@ def _text(node: Node, tag: str) -> str:
     return next(((child.text or "").strip() for child in node.children if child.tag == tag), "")
 
 
+def _check(include: Node, uri: str, report: Report) -> None:
+    """Report what libsdformat reads otherwise in an include."""
+    if _text(include, "placement_frame") and include.child("pose") is None:
+        message = f"the <include> of '{uri}' has a <placement_frame> and no <pose>, which libsdformat refuses; the pose is zero"
+        report.warn(codes.MISSING_PART, message, include.origin)
+    if (params := include.child(_PARAMS)) is not None:
+        message = f"<{_PARAMS}> of the <include> of '{uri}' is not read: the model is included as its file has it"
+        report.warn(codes.UNKNOWN_WORD, message, params.origin)
+
+
 def _override(model: Node, include: Node) -> None:
-    """What the include gives in place of the model's own: name, pose, whether it stands, placement frame, and further plugins."""
+    """What the include gives in place of the model's own, and besides: name, pose, whether it stands, placement frame, further elements."""
     name = _text(include, "name")
     if name:
         model.attributes["name"] = name
@@ -205,7 +225,7 @@ def _override(model: Node, include: Node) -> None:
     for child in include.children:
         if child.tag in _OVERRIDES:
             model.children = [own for own in model.children if own.tag != child.tag]
-        if child.tag in (*_OVERRIDES, "plugin"):
+        if child.tag not in _OF_INCLUDE:
             child.parent = model
             model.children.append(child)
 

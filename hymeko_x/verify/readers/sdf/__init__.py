@@ -121,10 +121,15 @@ def _load(path: Path, plant: Any, lookup: Lookup) -> None:
 
 
 def _packages(path: Path, lookup: Lookup) -> dict[str, Path]:
-    """The folders of the packages and models that a file names, and of the user's own."""
-    names = dict.fromkeys(name.decode("utf-8", "replace") for name in _PACKAGE.findall(path.read_bytes()))
+    """The folders of the packages and models that a file names, those that files in these name, and the user's own."""
     files = DiskFiles(path.parent, lookup.packages, lookup.search_path)
-    found = {name: Path(folder) for name in names if (folder := files.find_package(name)) is not None}
+    found: dict[str, Path] = {}
+    waiting = [path]
+    while waiting:
+        names = dict.fromkeys(name.decode("utf-8", "replace") for name in _PACKAGE.findall(waiting.pop().read_bytes()))
+        folders = {name: Path(folder) for name in names if name not in found and (folder := files.find_package(name)) is not None}
+        found |= folders
+        waiting += [file for folder in folders.values() for file in sorted(folder.glob("*.sdf"))]
     return {**found, **lookup.packages}
 
 
