@@ -47,7 +47,7 @@ def choice(name: str, kind: type[E]) -> Notation[E]:
     return Notation(name, lambda member: str(member.value), known.get)
 
 
-WITHOUT_TENSOR = flag("urdf.tensor", "unsaid")
-"""The notation of a body whose source gives its mass alone."""
+WITHOUT_TENSOR = flag("urdf.tensor", "unspecified")
+"""The notation of a body whose source gives its mass alone: its centre and its tensor are not those of its shapes."""
 UNNAMED = flag("unnamed", "yes")
 """The notation of an element that its author gave no name."""

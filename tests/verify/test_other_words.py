@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+
 import hymeko_x as hx
 
 Write = Callable[[str, str], Path]
@@ -82,3 +84,13 @@ def test_what_floats_below_another_body_has_three_slides_and_a_ball_in_mjcf(writ
     damped.write_text(target.read_text().replace('type="ball"', 'type="ball" damping="1"'))
     assert damped.read_text() != target.read_text()
     assert "joints" in {check.quantity for check in hx.verify(written("hymeko", FLOATING), damped).failed}
+
+
+@pytest.mark.unread("HX045")
+@pytest.mark.parametrize("to", ["z.hymeko", "z.xml", "z.sdf"])
+def test_a_mass_without_tensor_stays_at_the_origin_of_its_link(tmp_path: Path, to: str) -> None:
+    shape = '<collision><origin xyz="1 0 0"/><geometry><box size="1 1 1"/></geometry></collision>'
+    source, target = tmp_path / "z.urdf", tmp_path / to
+    source.write_text(f'<robot name="z"><link name="a"><inertial><mass value="2"/></inertial>{shape}</link></robot>')
+    hx.convert(source, target)
+    assert hx.verify(source, target).verdict.startswith("same")

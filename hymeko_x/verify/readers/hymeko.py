@@ -17,7 +17,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir import tendons as roles
 from hymeko_x.ir.mechanism import WORLD as WORLD_ID
 from hymeko_x.ir.mechanism import Id, JointView, Mechanism, ShapeView, numbers_weight, pose_weight
-from hymeko_x.ir.notations import UNNAMED
+from hymeko_x.ir.notations import UNNAMED, WITHOUT_TENSOR
 from hymeko_x.ir.solids import evenly_spread
 from hymeko_x.rewrite.context import Options
 from hymeko_x.rewrite.differentials import combinations
@@ -127,18 +127,19 @@ def _body(
         WORLD if view is None else numbers[view.parent],
         m.Joint(open=True) if view is None else _joint(view, efforts),
         inertial.mass or 0.0,
-        np.array(_centre(inertial, mechanism.shapes.get(key, ()))),
+        np.array(_centre(mechanism, key, inertial)),
         np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]),
         tuple(_shapes(mechanism, key)),
         tensor_is_known=inertial.tensor is not None or not inertial.mass,
     )
 
 
-def _centre(inertial: parts.Inertial, shapes: Iterable[ShapeView]) -> Vec3:
-    """The centre of mass: that of the shapes where a body has a mass, and neither a centre nor a tensor."""
-    if not inertial.mass or inertial.tensor is not None or any(inertial.com):
+def _centre(mechanism: Mechanism, key: Id, inertial: parts.Inertial) -> Vec3:
+    """The centre of mass: that of the shapes where a body has a mass without centre and tensor, and its source leaves them to the shapes."""
+    stays = inertial.tensor is not None or any(inertial.com) or mechanism.notation(key, WITHOUT_TENSOR)
+    if stays or not inertial.mass:
         return inertial.com
-    spread = evenly_spread(shapes)
+    spread = evenly_spread(mechanism.shapes.get(key, ()))
     return inertial.com if spread is None else spread.com
 
 
