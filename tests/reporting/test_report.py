@@ -180,6 +180,8 @@ def loss(element: str, field: str, before: str | None, after: str | None, fate: 
         (loss("mechanism", "urdf @xmlns:xacro", "http://x", None), Aspect.TEXT),
         (loss("material 'a'", "", "material()", None), Aspect.APPEARANCE),
         (loss("shape 'a'", "[1]", "~ material 'a' as 'material'", None), Aspect.APPEARANCE),
+        (loss("shape 'a'", "[2].target", "material 'white'", "material 'material_0'"), Aspect.APPEARANCE),
+        (loss("shape 'a'", "[0].target", "body 'a'", "body 'b'"), Aspect.PHYSICS),
         (loss("shape 'a'", "rgba", "[1 0 0 1]", "none"), Aspect.APPEARANCE),
         (loss("frame 'a'", "", "frame()", None), Aspect.PHYSICS),
         (loss("frame 'a'", "size", "[0.1]", "[]"), Aspect.APPEARANCE),
