@@ -135,7 +135,7 @@ def _body(
 
 
 def _centre(mechanism: Mechanism, key: Id, inertial: parts.Inertial) -> Vec3:
-    """The centre of mass: that of the shapes where a body has a mass without centre and tensor, and its source leaves them to the shapes."""
+    """The centre of mass: that of the shapes where a body has a mass without centre and tensor that its source leaves to the shapes."""
     stays = inertial.tensor is not None or any(inertial.com) or mechanism.notation(key, WITHOUT_TENSOR)
     if stays or not inertial.mass:
         return inertial.com
