@@ -44,6 +44,14 @@ def test_a_link_of_a_fragment_does_not_take_the_name_of_one_of_the_robot() -> No
     assert (text.count('<link name="b"'), text.count('<link name="c"')) == (1, 1)
 
 
+def test_what_fragments_add_stands_behind_what_sdf_has_itself() -> None:
+    """It stood before the pose and the inertial, and in the opposite order."""
+    inside = '<gravity>false</gravity><selfCollide>true</selfCollide><sensor name="s" type="imu"/>'
+    text = sdf(ROBOT.format("", f'<gazebo reference="b">{inside}</gazebo><gazebo><plugin name="p" filename="f"/></gazebo>'))
+    order = ["</inertial>", "<gravity>", "<self_collide>", "<sensor", "</link>", "<plugin"]
+    assert sorted(order, key=text.index) == order
+
+
 def test_elements_of_older_programs_are_no_children_of_a_model() -> None:
     assert "canonicalBody" not in sdf(ROBOT.format("", "<gazebo><canonicalBody>b</canonicalBody><static>true</static></gazebo>"))
 

@@ -7,6 +7,7 @@ Source: libsdformat's reader of such files. Fixed joints always stay, so what as
 from __future__ import annotations
 
 import re
+import sys
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 from xml.parsers.expat import ExpatError
@@ -37,6 +38,7 @@ _IMU_PARTS: Mapping[str, str] = MappingProxyType({"rate": "angular_velocity", "a
 _PREFIX = re.compile(r"<([A-Za-z_][\w.-]*):|\s([A-Za-z_][\w.-]*):[\w.-]+=")
 _SENSOR_NAME = re.compile(r"<(?:sensor|projector)\b[^>]*?\sname=([\"'])(.*?)\1")
 _XMLNS = "@xmlns:"
+_LAST = sys.maxsize
 _MATERIALS = "file://media/materials/scripts/gazebo.material"
 
 
@@ -101,13 +103,13 @@ def _extras_of(node: Node, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> 
             continue
         if not reference:
             if (child.tag in fragments.OF_MODEL or ":" in child.tag) and not _is_taken(child, mechanism):
-                yield ROOT, Extra(words.FORMAT, "model", markup(child))
+                yield ROOT, _at_end("model", markup(child))
         elif body in mechanism.graph.vertices:
             yield from _of_link(child, body, mechanism, edges)
         elif joint in mechanism.graph.edges and child.tag in fragments.OF_JOINT:
             yield joint, _extra(*fragments.OF_JOINT[child.tag], child)
         elif joint in mechanism.graph.edges and child.tag == "sensor":
-            yield joint, Extra(words.FORMAT, "", markup(child))
+            yield joint, _at_end("", markup(child))
 
 
 def _is_taken(child: Node, mechanism: Mechanism) -> bool:
@@ -121,14 +123,14 @@ def _of_link(child: Node, body: Id, mechanism: Mechanism, edges: dict[Id, RobotE
     if child.tag in fragments.OF_LINK:
         yield body, _extra("", fragments.OF_LINK[child.tag], child)
     elif child.tag == "turnGravityOff":
-        yield body, Extra(words.FORMAT, "", f"<gravity>{'false' if _text(child) in ('true', '1') else 'true'}</gravity>")
+        yield body, _at_end("", f"<gravity>{'false' if _text(child) in ('true', '1') else 'true'}</gravity>")
     elif child.tag in fragments.IN_LINK:
-        yield body, Extra(words.FORMAT, "", _IMU_NOISE.sub(_noise_by_axis, markup(child)))
+        yield body, _at_end("", _IMU_NOISE.sub(_noise_by_axis, markup(child)))
     elif child.tag in fragments.OF_COLLISION:
         yield from ((view.id, _extra(*fragments.OF_COLLISION[child.tag], child)) for view in shapes if view.shape.role is Role.COLLISION)
     elif child.tag == "material" and _text(child):
         script = f"<script><uri>{_MATERIALS}</uri><name>{escaped(_text(child))}</name></script>"
-        yield from ((view.id, Extra(words.FORMAT, "material", script)) for view in shapes if view.shape.role is Role.VISUAL)
+        yield from ((view.id, _at_end("material", script)) for view in shapes if view.shape.role is Role.VISUAL)
     elif child.tag == "mu1":
         try:
             friction = (NUMBER.read(_text(child)),)
@@ -159,4 +161,9 @@ def _text(node: Node) -> str:
 
 
 def _extra(path: str, tag: str, child: Node) -> Extra:
-    return Extra(words.FORMAT, path, f"<{tag}>{escaped(_text(child))}</{tag}>")
+    return _at_end(path, f"<{tag}>{escaped(_text(child))}</{tag}>")
+
+
+def _at_end(path: str, text: str) -> Extra:
+    """An extra behind the elements that the writer puts there, and in the order in which such extras are found."""
+    return Extra(words.FORMAT, path, text, _LAST)
