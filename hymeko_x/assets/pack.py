@@ -55,8 +55,9 @@ def pack(
     """
     if format.pack is None:
         read = mechanism if format.is_exact else _with_meshes_of_source(mechanism, files, report)
-        packed = keep_references(read, shelf, files, report, layout.keep if layout else Keep.of(format, shelf.mode), layout)
         row = formats.of_source(mechanism)
+        keep, models = layout.keep if layout else Keep.of(format, shelf.mode), format.has_models or row is None or not row.has_models
+        packed = keep_references(read, shelf, files, report, keep, layout, models=models)
         if format.is_exact and row is not None and row.place_extras is not None:
             packed = formats.loaded(row.place_extras)(mechanism, packed, shelf, files, report, Keep.of(format, shelf.mode))
     else:
@@ -69,6 +70,7 @@ def pack(
 
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 _PACKAGE = re.compile(r"(package|model):", re.IGNORECASE)
+_MODEL = re.compile(r"model:", re.IGNORECASE)
 _PACKAGE_START = re.compile(r"(package|model)://", re.IGNORECASE)
 _REMOTE = re.compile(r"(https?|ftp):", re.IGNORECASE)
 _FOLDERS: Mapping[type, str] = MappingProxyType({Mesh: "meshes", Texture: "textures"})
@@ -111,17 +113,19 @@ def keep_references(
     layout: Layout | None = None,
     *,
     with_companions: bool = True,
+    models: bool = True,
 ) -> Mechanism:
     """The mechanism with every uri kept or rewritten; a file that is not there keeps its uri, with a warning.
 
-    Files that meshes refer to go along, unless the target's programs never look at them.
+    Files that meshes refer to go along, unless the target's programs never look at them. ``models``: whether the target's programs find
+    ``model://NAME``.
     """
     folders = _FOLDERS if layout is None else {**_FOLDERS, Texture: layout.textures}
     changed: dict[Id, Mesh | Texture] = {}
     for key, part in mechanism.assets():
         if part.uri is None:
             continue
-        uri = new_uri(part.uri, folders[type(part)], shelf, files, keep)
+        uri = new_uri(part.uri, folders[type(part)], shelf, files, keep, models=models)
         if uri is None:
             report.warn(
                 codes.ASSET_NOT_FOUND,
@@ -153,12 +157,13 @@ def unloaded(mechanism: Mechanism) -> Mechanism:
     return mechanism.replace(vertices=plain)
 
 
-def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> str | None:
+def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep, *, models: bool = True) -> str | None:
     """The uri to write, or None when there is no such file. A package's that stays is not looked for, but for an archive.
 
     Where only a stand-in is left of a package's file, this goes into a folder of the package's name, in which the uri finds it.
     """
-    is_kept = keep is not Keep.NOTHING and is_of_package(uri)
+    is_named = is_of_package(uri)
+    is_kept = keep is not Keep.NOTHING and is_named and (models or _MODEL.match(uri) is None)
     if _REMOTE.match(uri) or (is_kept and _stays(uri, shelf, files)):
         return uri
     path = files.find(uri)
@@ -167,7 +172,7 @@ def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> st
     if shelf.mode == "reference":
         return shelf.way_to(path, uri)
     place = place_of(uri)
-    if (is_kept or keep is Keep.PACKAGES_AND_PATHS) and _is_below(place) and shelf.copy_as(place, path):
+    if (is_kept or (keep is Keep.PACKAGES_AND_PATHS and not is_named)) and _is_below(place) and shelf.copy_as(place, path):
         return uri
     found = read_file(files, uri)
     return None if found is None else shelf.copy(folder, file_stem(uri), suffix_of(path), *found)

@@ -215,6 +215,7 @@ SDF = Format(
     outline="hymeko_x.xml.outline:outline",
     references="hymeko_x.formats.sdf.references:renamed",
     keeps_package_uris=True,
+    has_models=True,
     joints_share_names=True,
     has_single_dof_joints=True,
     requires_mass=True,

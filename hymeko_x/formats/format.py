@@ -136,6 +136,8 @@ class Format(Struct, frozen=True):
     """The extras of a mesh by which its points are elsewhere than in its file, or are made."""
     keeps_package_uris: bool = False
     """Whether ``package://NAME`` is written as it is: programs that read the format find packages in their own ways."""
+    has_models: bool = False
+    """Whether these programs find ``model://NAME`` as well; others that take such a robot get its files beside the output."""
 
     # ---- what the ledger and HyMeKo text ask
     stated_notations: Mapping[str, str] = field(default_factory=dict)

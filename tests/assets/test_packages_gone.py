@@ -21,6 +21,8 @@ from tests.conftest import RealRobots
 from tests.meshes.test_mesh import STL
 from tests.residue.test_real_robots import SUFFIXES
 
+MODEL = """<sdf version="1.9"><model name="arm"><link name="base"><visual name="v"><geometry><mesh><uri>model://arm/meshes/part.obj</uri></mesh>
+</geometry></visual></link></model></sdf>"""
 MESHES = ("meshes/part.obj", "meshes/sub/tip.STL")
 LINK = """<link name="base">
     <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
@@ -90,6 +92,22 @@ def test_without_originals_a_mesh_of_the_stage_stands_in(tmp_path: Path, monkeyp
     assert sum("becomes the points that the source has of it" in diagnostic.message for diagnostic in result.report) == 2
     monkeypatch.chdir(tmp_path / "back")
     assert meshes_of(Path("r.urdf")) == (2, 2)
+
+
+@pytest.mark.filterwarnings("ignore:`Scene.dump:DeprecationWarning")
+@pytest.mark.parametrize("target", ["r.urdf", "r.urdf.xacro"])
+def test_files_of_a_model_of_gazebo_stand_beside_a_robot_for_ros(target: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "arm" / "meshes").mkdir(parents=True)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "arm" / "meshes" / "part.obj").write_text(OBJ)
+    (tmp_path / "arm" / "model.sdf").write_text(MODEL)
+    hx.convert(tmp_path / "arm" / "model.sdf", tmp_path / "out" / target)
+    hx.convert(tmp_path / "arm" / "model.sdf", tmp_path / "out" / "r.sdf")
+    assert 'filename="meshes/part.obj"' in (tmp_path / "out" / target).read_text()
+    assert "model://arm/meshes/part.obj" in (tmp_path / "out" / "r.sdf").read_text()
+    if target == "r.urdf":
+        monkeypatch.chdir(tmp_path / "out")
+        assert meshes_of(Path("r.urdf")) == (1, 1)
 
 
 def test_a_package_that_is_there_is_referred_to_and_not_copied(tmp_path: Path) -> None:
