@@ -210,11 +210,16 @@ def _check_inertia(found: _Findings) -> None:
 
 
 def _group_mass(mechanism: Mechanism, top: Id) -> float:
+    """The mass of a body and of those that are fixed to it, in kg; infinite where an engine computes it from a shape."""
     total, stack = 0.0, [top]
+    is_computed = formats.native_format(mechanism) is not None
     while stack:
         key = stack.pop()
         inertial = mechanism.vertex(key, parts.Body).inertial
-        total += max(0.0, inertial.mass or 0.0) if inertial is not None else 0.0
+        if inertial is not None:
+            total += max(0.0, inertial.mass or 0.0)
+        elif is_computed and any(0.0 not in (view.shape.mass, view.shape.density) for view in mechanism.shapes.get(key, ())):
+            return math.inf
         stack.extend(view.child for view in mechanism.children.get(key, ()) if not view.joint.dofs)
     return total
 

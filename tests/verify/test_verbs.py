@@ -368,6 +368,14 @@ def test_a_profile_asks_only_for_what_it_needs(written: Write, capsys: pytest.Ca
     assert found_codes(file, capsys, "--profile", "simulation") == (exits.FAIL_ON, {"HX314"})
 
 
+@pytest.mark.parametrize(
+    ("shape", "found"), [("", set()), (' mass="2"', set()), (' density="0"', {"HX314"}), (' mass="0"', {"HX314"})], ids=str
+)
+def test_shapes_that_weigh_in_mujoco_are_masses(shape: str, found: set[str], written: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    body = f'<body name="b"><freejoint/><body name="fixed"><geom name="g" size="1"{shape}/></body></body>'
+    assert found_codes(written("mjcf", f"<mujoco><worldbody>{body}</worldbody></mujoco>"), capsys)[1] == found
+
+
 def test_a_hypergraph_without_bodies_is_no_robot(tmp_path: Path) -> None:
     text = tmp_path / "plain.hymeko"
     text.write_text("plain\nnode0 {\nx1 x2\nx3 x4\n@e1 {+x1 +x2 -x3 -x4}\n}\n")
