@@ -27,6 +27,8 @@ _IGNORED = {"MODIFIER", "LEGACY_HEADER", "COMMENT", "SEMICOLON", "USING", "CONST
 _KEYWORDS = {"USE", "IMPORT", "USING", "AS", "EDGE_WORD"}
 _PAIRS = {"}": "{", "]": "[", ")": "("}
 _CLOSERS = {"RBRACE": "{", "RSQB": "[", "RPAR": "("}
+_INDENT = re.compile(r"[ \t]*")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _DIGIT_NAME = re.compile(r"\d+[^\W\d]\w*")
 _BEGINNINGS = {
     "<": "this looks like XML: --from urdf, --from xacro or --from mjcf reads it",
@@ -108,7 +110,7 @@ def _token_hint(error: UnexpectedToken, text: str, at_end: bool) -> str:
         return foreign
     unclosed, unopened = _brackets(text)
     if at_end and unclosed is not None:
-        bracket, line = unclosed
+        bracket, line = _unclosed_by_layout(text) or unclosed
         return f"the '{bracket}' in line {line} is never closed"
     if error.token.type in _KEYWORDS and token.isidentifier():
         return f"'{token}' is a word of the language; as a name it is written in backticks: `{token}`"
@@ -144,6 +146,8 @@ def _expectation_hint(expected: set[str], token: str, before: str) -> str:
     """A hint from what was expected, the token that came, and the character before it."""
     if expected == {"STRING"}:
         return 'an import names a file: import "legs.hymeko"; as a name the word is written in backticks: `import`'
+    if _NUMBER.fullmatch(token) and before.isdigit():
+        return "a list of numbers stands in brackets: [1 2 3]"
     if token == ";" and not expected.isdisjoint({"RSQB", "RPAR"}):
         return "values and parameters are separated by white space or commas"
     if token in ("+", "-", "~") and expected >= {"RPAR", "COMMA"}:
@@ -155,7 +159,8 @@ def _expectation_hint(expected: set[str], token: str, before: str) -> str:
     if token == ";" and expected == {"NAME"}:
         return "a short name for a path is defined so: using a.b as c;"
     if "RPAR" in expected and "NAME" in expected and "LBRACE" not in expected and token not in _PAIRS:
-        return "parameters have names: part(mass=2)"
+        lists = "; a list of numbers stands in brackets: [1 2 3]" if _NUMBER.fullmatch(token) else ""
+        return f"parameters have names: part(mass=2){lists}"
     if "NAME" in expected and _DIGIT_NAME.fullmatch(token):
         return f"a name does not begin with a digit; as a name it is written in backticks: `{token}`"
     if token == "=":
@@ -181,6 +186,25 @@ def _brackets(text: str) -> tuple[tuple[str, int] | None, int | None]:
                 return _with_line(stack, text), match.start()
             stack.pop()
     return _with_line(stack, text), None
+
+
+def _unclosed_by_layout(text: str) -> tuple[str, int] | None:
+    """The first open brace that is never closed if closing braces at the beginnings of lines close what is indented like them."""
+    opened: list[tuple[int, int]] = []
+    depth = begin = end = 0
+    for match in TOKENS.finditer(text):
+        line = text.rfind("\n", end, match.start()) + 1
+        if line or not end:
+            begin = line + len(_INDENT.match(text, line)[0])  # type: ignore[index]
+            depth = begin - line
+        end = match.end()
+        if match[0] == "{":
+            opened.append((depth, match.start()))
+        elif match[0] == "}" and opened:
+            if begin == match.start() and opened[-1][0] > depth:
+                return _with_line([("{", opened[-1][1])], text)
+            opened.pop()
+    return None
 
 
 def _with_line(stack: list[tuple[str, int]], text: str) -> tuple[str, int] | None:

@@ -69,7 +69,10 @@ class ValueReader(Struct):
     def numbers(self, value: Value | None, dimension: str, item: Item, count: int | None = None) -> tuple[float, ...]:
         """A list of numbers in SI, of the given length if there is one."""
         if not is_list(value):
-            raise self.refuse(item, f"{name_of(item)} takes a list of numbers, not {describe(value)}", hint=_hint(value))
+            hint = _hint(value)
+            if value is None and isinstance(item, Field):
+                hint = f"numbers stand in brackets: {item.name} [1 2 3]; a name stands behind '=': {item.name}=name"
+            raise self.refuse(item, f"{name_of(item)} takes a list of numbers, not {describe(value)}", hint=hint)
         factor = self.units.get(dimension, 1.0)
         values = tuple([part * factor if type(part) is float else self.number(part, dimension, item) for part in value])
         if count is not None and len(values) != count:
