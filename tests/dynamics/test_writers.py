@@ -38,6 +38,8 @@ SYSTEMS = {
     ' c : damper { c 0.4 law "c*v*abs(v)" } @e : constitutive { + w - m ~ k ~ c ~ f } }',
     "cart_pole": CART_POLE,
     "top": SPINNING,
+    "rubbed": "r : robot { world {} a { mass 1 com [0.1 0 0.2] inertia [0.1 0.2 0.3] } b { mass 1 com [0 0 0.2] inertia [0.1 0.1 0.1] }"
+    " @hip : ball { + world - a stiffness 4 damping 0.1 } @knee : revolute { [0 0 0.4] + a - b axis=Y friction 0.3 stiffness 2 } }",
     "four_bar": (LISTING.parents[2] / "examples" / "four_bar.hymeko").read_text(),
 }
 
@@ -190,6 +192,9 @@ def test_octave_computes_the_step_response(tmp_path: Path) -> None:
     (tmp_path / "car.m").write_text(written(car, "octave") + "disp(y(end)); disp(poles');\n")
     out = subprocess.run(["octave", "-q", "car.m"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     assert float(out.split()[0]) == pytest.approx(1.0, abs=1e-3)
+    (tmp_path / "top.m").write_text(written(hx.dynamics(load(SPINNING)), "octave") + "disp(size(y));\n")
+    out = subprocess.run(["octave", "-q", "top.m"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    assert out.split()[-2:] == ["1001", "12"]  # neither inputs nor outputs
 
 
 def matrix(text: str, name: str) -> np.ndarray:

@@ -32,6 +32,10 @@ def write_octave(system: System, space: StateSpace) -> str:
     """A script for Octave (package control) and MATLAB (Control System Toolbox): A, B, C, D, the system, and its step response."""
     names = [f"{name} = {{{', '.join(repr(v.name) for v in part)}}};" for name, part in _groups(space)]
     lines = [*description(system, "%"), "if exist('OCTAVE_VERSION', 'builtin'), pkg load control; end", *_matrices(space), *names]
+    if not space.inputs:
+        lines.append("B = zeros(size(A, 1), 1); D = zeros(size(C, 1), 1); % there is no input, and ss wants one")
+    if not space.outputs:
+        lines.append("C = eye(size(A)); D = zeros(size(A, 1), size(B, 2)); % there is no output, and ss wants one: all states")
     lines += [
         "model = ss(A, B, C, D);",
         "t = (0:1000)' / 500;",
