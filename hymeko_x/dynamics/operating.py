@@ -136,9 +136,18 @@ def _controls(found: Trees, signals: list[float]) -> list[float]:
 
 
 def start_of(found: Trees, positions: Mapping[str, tuple[float, ...]], *, keep: bool = True) -> list[float]:
-    """The independent coordinates at these positions (others at their reference), with closed loops."""
+    """The independent coordinates at these positions (others at their reference), with closed loops.
+
+    Raises: Refusal (HX407, HX408), and HX404 where some motion moves no mass there.
+    """
+    import numpy as np
+
     z = _positions(independent(found.tree, found.followers), positions)
-    return assembled(found, z, positions if keep else ())
+    z = assembled(found, z, positions if keep else ())
+    still = [0.0] * (len(found.system.states) - len(z))
+    if not np.isfinite(np.array(found.graph([*z, *still], [0.0] * len(found.system.inputs)), dtype=float)).all():
+        found.refuse_singular(z)
+    return z
 
 
 def _positions(links: Sequence[Link], given: Mapping[str, tuple[float, ...]]) -> list[float]:

@@ -96,17 +96,30 @@ class Trees(Struct, frozen=True, dict=True):
         with np.errstate(divide="ignore", invalid="ignore"):
             found = _array(forward_dynamics(self._constants, _columns(q), _columns(v), _columns(tau)), q)
         if not np.isfinite(found).all():
-            self._refuse_singular(q)
+            self._refuse_light(q)
         return found
 
-    def _refuse_singular(self, q: Floats) -> None:
+    def refuse_singular(self, z: Sequence[float]) -> None:
+        """Refuse (HX404) independent coordinates at which some motion moves no mass, with the joint."""
+        import numpy as np
+
+        width = sum(link.velocities for link in independent(self.tree, self.followers))
+        self._refuse_light(np.array(expanded(self.tree, self.followers, z, [0.0] * width, floats()).q, dtype=float))
+
+    def _refuse_light(self, q: Floats) -> None:
         import numpy as np
 
         diagonal = np.diagonal(self.mass_matrix(q), axis1=-2, axis2=-1).reshape(-1, self.tree.nv).min(axis=0)
         light = int(np.argmin(diagonal))
         link = next(link for link in self.tree.links if link.v <= light < link.v + link.velocities)
         message = f"{link.joint} moves no mass there; the mass matrix is singular"
-        raise refuse(codes.SINGULAR_MASS, message, element=str(link.joint), hint="give what it moves an inertia tensor, or it an armature")
+        raise refuse(
+            codes.SINGULAR_MASS,
+            message,
+            self.mechanism.origin(link.joint),
+            element=str(link.joint),
+            hint="give what it moves an inertia tensor, or it an armature",
+        )
 
     def passive(self, q: Floats, v: Floats) -> Floats:
         """The forces of springs, damping and Coulomb friction, at joints and of tendons."""

@@ -12,6 +12,7 @@ import sympy
 
 import hymeko_x as hx
 from hymeko_x.diagnostics import Refusal, Report
+from hymeko_x.dynamics.balance import balanced_response
 from hymeko_x.dynamics.numbers import floats
 from hymeko_x.dynamics.operating import linearized
 from tests.dynamics.networks import load
@@ -200,6 +201,9 @@ def test_a_point_mass_on_its_own_axis_is_refused_when_it_accelerates() -> None:
     found = hx.dynamics(load("r : robot { world {} a { mass 1 } @j { + world - a axis=Z } }"))
     with pytest.raises(Refusal, match=r"HX404\]: joint 'j' moves no mass there"):
         found.forward(np.zeros(1), np.zeros(1), np.ones(1))
+    for act in (found.state_space, lambda: found.simulate(0.1, 0.05), lambda: balanced_response(found, 0.1, 0.05)):
+        with pytest.raises(Refusal, match=r"HX404\]: joint 'j' moves no mass there"):
+            act()
 
 
 def test_what_is_not_in_the_equations_is_named() -> None:
