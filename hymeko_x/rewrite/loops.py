@@ -50,7 +50,8 @@ def close_by_points(mechanism: Mechanism, context: Context) -> Mechanism:
         view = JointView(key, Joint(loop.dofs), first.target, second.target, pose_weight(first), pose_weight(second))
         closures = _closures(view, loop)
         if not closures:
-            message = f"{key} has dofs for which there is no closure; it is left out"
+            kinds = " and a ".join(dof.kind.value for dof in loop.dofs)
+            message = f"{key} closes a loop by a {kinds}, for which there is no closure; it is left out"
             context.report.warn(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
         for number, closure in enumerate(closures):
             edges[key if number == 0 else names.take("loop", key.name)] = closure
