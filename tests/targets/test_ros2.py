@@ -245,6 +245,65 @@ def test_the_way_through_urdf_and_srdf_and_back_gives_the_same_torques(text: str
     assert after.key("home").qpos[after.joint("shoulder").qposadr[0]] == 0.5
 
 
+GRIPPER = """<mujoco model="grip">
+  <compiler angle="radian"/>
+  <worldbody>
+    <body name="hand">
+      <inertial pos="0 0 0" mass="1" diaginertia="0.1 0.1 0.1"/>
+      <body name="left" pos="0 0.1 0"><inertial pos="0 0 0" mass="0.1" diaginertia="1e-3 1e-3 1e-3"/>
+        <joint name="l" type="slide" axis="0 1 0" range="0 0.04"/></body>
+      <body name="right" pos="0 -0.1 0"><inertial pos="0 0 0" mass="0.1" diaginertia="1e-3 1e-3 1e-3"/>
+        <joint name="r" type="slide" axis="0 -1 0" range="0 0.04"/></body>
+    </body>
+  </worldbody>
+  <tendon><fixed name="split"><joint joint="l" coef="0.5"/><joint joint="r" coef="0.25"/></fixed></tendon>
+  <actuator>
+    <general name="fingers" tendon="split" gear="2" ctrlrange="0 255" forcerange="-100 100" gainprm="0.02" biastype="affine"
+      biasprm="0 -100 -10"/>
+  </actuator>
+</mujoco>"""
+
+
+def test_an_actuator_on_a_combination_of_joints_is_a_gpio_and_comes_back(tmp_path: Path) -> None:
+    (tmp_path / "grip.xml").write_text(GRIPPER, "utf-8")
+    report = hx.convert(tmp_path / "grip.xml", tmp_path / "grip.urdf", target="ros2").report
+    assert "<ros2_control> has the drives of 1 combination of joints (--for ros2)" in [item.message for item in report]
+    gpio = etree.parse(str(tmp_path / "grip.urdf")).find("ros2_control/gpio")
+    assert gpio is not None
+    assert {node.get("name"): node.text for node in gpio.iterfind("param")} == {
+        "tendon": "split",
+        "joints": "l r",
+        "coefficients": "0.5 0.25",
+    }
+    assert [node.get("name") for node in gpio.iterfind("command_interface")] == ["position"]
+    hx.convert(tmp_path / "grip.urdf", tmp_path / "back.xml", target="mujoco")
+    before, after = (mujoco.MjModel.from_xml_path(str(tmp_path / name)) for name in ("grip.xml", "back.xml"))
+    data, other = mujoco.MjData(before), mujoco.MjData(after)
+    for ctrl in (0.0, 100.0, 255.0):
+        data.ctrl[:] = other.ctrl[:] = ctrl
+        for found in (data, other):
+            found.joint("l").qpos[:], found.joint("r").qvel[:] = 0.02, 0.3
+        mujoco.mj_forward(before, data)
+        mujoco.mj_forward(after, other)
+        ours, theirs = ([found.joint(name).qfrc_actuator[0] for name in "lr"] for found in (data, other))
+        assert theirs == pytest.approx(ours, rel=1e-12)
+        assert ours[0] == 2.0 * ours[1] != 0.0
+
+
+@pytest.mark.parametrize(
+    "change",
+    [('name="joints">l r', 'name="joints">l none'), ("0.5 0.25", "0.5"), ('"actuator_type"', '"kind"')],
+    ids=["no such joint", "a coefficient too few", "no type"],
+)
+def test_a_gpio_that_names_no_combination_is_none(change: tuple[str, str], tmp_path: Path) -> None:
+    (tmp_path / "grip.xml").write_text(GRIPPER, "utf-8")
+    hx.convert(tmp_path / "grip.xml", tmp_path / "grip.urdf", target="ros2")
+    text = (tmp_path / "grip.urdf").read_text("utf-8")
+    assert change[0] in text
+    robot = hx.loads(text.replace(*change), "urdf").mechanism
+    assert not dict(robot.vertices(Actuator))
+
+
 def test_a_pose_comes_back_as_a_keyframe(urdf: Path, tmp_path: Path) -> None:
     hx.convert(urdf, tmp_path / "back.xml")
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "back.xml"))

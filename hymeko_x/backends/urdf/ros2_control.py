@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec.structs import replace
 
@@ -12,7 +12,8 @@ from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import urdf as urdf_words
 from hymeko_x.formats.urdf import ros2_control as words
 from hymeko_x.ir.mechanism import ROOT, Extra, end_of, numbers_weight
-from hymeko_x.ir.parts import Actuator, Drive, Stance
+from hymeko_x.ir.parts import Actuator, Drive, Stance, Tendon
+from hymeko_x.ir.tendons import FIXED
 from hymeko_x.ir.values import number_text, numbers_text
 from hymeko_x.rewrite.transmissions import followers
 from hymeko_x.xml.printing import Tag, ready
@@ -31,22 +32,36 @@ Command = tuple[str, "Id", Actuator, tuple[float, ...]]
 """What a joint is commanded, the actuator that takes it with its id, and its gear."""
 
 
+class Combination(NamedTuple):
+    """An actuator on a linear combination of joints: its command, the tendon, the gear, and each joint with its coefficient."""
+
+    actuator: Id
+    interface: str
+    tendon: Id
+    gear: tuple[float, ...]
+    joints: tuple[tuple[str, float], ...]
+
+
 def declare_ros2_control(mechanism: Mechanism, context: Context) -> Mechanism:
     """The drives of joints as command interfaces of <ros2_control>, unless the robot has such an element already."""
     own = mechanism.extras.get(ROOT, ())
     if any(extra.text.startswith(f"<{words.TAG}") for extra in own):
         return mechanism
     commands, left = _commands(mechanism)
+    combined = [one for key in left if (one := _combination(mechanism, key)) is not None]
+    left = [key for key in left if key not in {one.actuator for one in combined}]
     if left:
         names = listed([f"'{key.name}'" for key in left], _SHOWN)
         message = f"{counted(len(left), 'actuator')} without a single joint and a command of its own, and without <{words.TAG}>: {names}"
         context.report.warn(codes.NOT_SAID, message, element=str(left[0]))
     moved = _moved(mechanism, commands, context)
-    if not commands and not moved:
+    if not commands and not moved and not combined:
         return mechanism
     driven = len(commands) + sum(len(one.joints) for one in moved)
-    context.report.note(codes.FOR_TARGET, f"<{words.TAG}> has the drives of {counted(driven, 'joint')} ({context.reason})")
-    text = ready(_system(mechanism, commands, moved), 1)
+    parts = [counted(driven, "joint")] if driven else []
+    parts += [f"{counted(len(combined), 'combination')} of joints"] if combined else []
+    context.report.note(codes.FOR_TARGET, f"<{words.TAG}> has the drives of {' and '.join(parts)} ({context.reason})")
+    text = ready(_with_combinations(_system(mechanism, commands, moved), mechanism, combined), 1)
     last = max(len(mechanism.graph.vertices) + len(mechanism.graph.edges), *(extra.index for extra in own), 0)
     extra = Extra(urdf_words.FORMAT, "", text, last + 1)
     ends = [arc.target for one in moved for arc in one.joints]
@@ -91,6 +106,33 @@ def _commands(mechanism: Mechanism) -> tuple[dict[Id, list[Command]], list[Id]]:
         else:
             found.setdefault(view.id, []).append((interface, key, part, numbers_weight(targets[0])))
     return found, left
+
+
+def _combination(mechanism: Mechanism, key: Id) -> Combination | None:
+    """What an actuator drives that is a linear combination of joints and has a command; None of every other."""
+    drives = [arcs for _, drive, arcs in mechanism.edges(Drive) if end_of(arcs, 1) == key and not drive.kind]
+    ends = [arc for arcs in drives for arc in arcs if arc.sign < 0]
+    edge = mechanism.graph.edges.get(ends[0].target) if len(ends) == 1 else None
+    part = mechanism.vertex(key, Actuator)
+    interface = words.interface_of(part.kind, dict(part.parameters))
+    if edge is None or interface is None or not isinstance(edge.data, Tendon) or edge.data.kind != FIXED:
+        return None
+    joints = [(arc.target.name, numbers_weight(arc)) for arc in edge.arcs]
+    if any(arc.target not in mechanism.joints for arc in edge.arcs) or any(len(numbers) != 1 for _, numbers in joints):
+        return None
+    return Combination(key, interface, ends[0].target, numbers_weight(ends[0]), tuple((name, numbers[0]) for name, numbers in joints))
+
+
+def _with_combinations(system: Tag, mechanism: Mechanism, combined: Iterable[Combination]) -> Tag:
+    """The system with a <gpio> for each combination of joints that an actuator drives."""
+    for one in combined:
+        actuator = mechanism.vertex(one.actuator, Actuator)
+        tag = system.add(words.COMBINED, name=one.actuator.name)
+        command = tag.add("command_interface", name=one.interface)
+        _add_parameters(command, [(words.TYPE, actuator.kind), *([(words.GEAR, one.gear)] if one.gear else []), *actuator.parameters])
+        names, numbers = zip(*one.joints, strict=True)
+        _add_parameters(tag, [(words.TENDON, one.tendon.name), (words.JOINTS, " ".join(names)), (words.COEFFICIENTS, numbers)])
+    return system
 
 
 def _system(mechanism: Mechanism, commands: dict[Id, list[Command]], moved: list[Transmission]) -> Tag:

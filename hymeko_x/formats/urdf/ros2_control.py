@@ -4,6 +4,9 @@ Each command interface of a joint is an actuator. What it is for MuJoCo stands i
 the hardware's plugin and reads no further; so a robot comes back with the same actuators. Interfaces without them are commands that the
 hardware takes, as a transmission has them: which gains a controller has is not known.
 
+An actuator on a combination of joints is a <gpio>, the component for commands that belong to no single joint, with the joints and their
+coefficients as its parameters.
+
 Source: ros2_control, hardware_interface/src/component_parser.cpp.
 """
 
@@ -20,6 +23,9 @@ PLUGIN = "mock_components/GenericSystem"
 """The hardware that ros2_control itself brings: it follows every command, until the robot's own plugin stands here."""
 NAME, TYPE, GEAR = "actuator", "actuator_type", "gear"
 """Parameters of an interface: name and type of the actuator, and its gear."""
+COMBINED = "gpio"
+TENDON, JOINTS, COEFFICIENTS = "tendon", "joints", "coefficients"
+"""Parameters of a <gpio>: the combination that its commands drive, its joints, and the coefficient of each."""
 COMMAND = "command_interface"
 """The parameters of a drive that are the command interfaces of its joint, in their order."""
 REDUCTIONS = ("mechanical_reduction", "mechanicalReduction")

@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.urdf import ros2_control as words
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.parts import Actuator, Drive
+from hymeko_x.ir.parts import Actuator, Drive, Tendon
+from hymeko_x.ir.tendons import FIXED
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from hymeko_x.frontends.urdf.builder import UrdfBuilder
-    from hymeko_x.ir.mechanism import RobotArc
+    from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Parameters
     from hymeko_x.xml.tree import Node
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 def read_ros2_control(root: Node, builder: UrdfBuilder) -> None:
     """Add an actuator for each command interface that says which one it is, and one for all others of a joint together."""
     for system in (node for node in root.children if node.tag == words.TAG):
+        for combined in (node for node in system.children if node.tag == words.COMBINED):
+            _read_combined(combined, builder)
         gears = dict(_gears(system))
         for joint in (node for node in system.children if node.tag == "joint"):
             name, interfaces = joint.attributes.get("name", ""), [node for node in joint.children if node.tag == "command_interface"]
@@ -50,19 +53,40 @@ def _read_commands(interfaces: list[Node], joint: str, gear: tuple[str, float | 
 
 
 def _read_interface(node: Node, joint: str, builder: UrdfBuilder) -> bool:
-    """Add the actuator of an interface that says which one it is; whether it does."""
+    """Add the actuator of a joint's interface that says which one it is; whether it does."""
+    kind = _texts(node).get(words.TYPE, "")
+    if kind and joint in builder.joints:
+        _drive(node, joint, builder.joints[joint], builder)
+    return bool(kind)
+
+
+def _drive(node: Node, default: str, target: Id, builder: UrdfBuilder) -> None:
+    """Add the actuator of an interface, of this name by default, and its drive."""
     texts = _texts(node)
-    kind = texts.pop(words.TYPE, "")
-    if not kind or joint not in builder.joints:
-        return bool(kind)
-    key = builder.fresh("actuator", texts.pop(words.NAME, "") or joint, node.origin)
+    kind = texts.pop(words.TYPE)
+    key = builder.fresh("actuator", texts.pop(words.NAME, "") or default, node.origin)
     gear = read_numbers(texts.pop(words.GEAR, ""))
     for name in ("min", "max"):
         texts.pop(name, "")  # the joint's own limits
     builder.vertices[key] = Actuator(kind, _parameters(texts))
-    arcs: tuple[RobotArc, ...] = Arc(key, 1), Arc(builder.joints[joint], -1, gear or None)
+    arcs: tuple[RobotArc, ...] = Arc(key, 1), Arc(target, -1, gear or None)
     builder.edges[builder.names.take("drive", key.name)] = Edge(Drive(), arcs)
-    return True
+
+
+def _read_combined(node: Node, builder: UrdfBuilder) -> None:
+    """Add the combination of joints that a <gpio> names, and the actuators of its interfaces; other ones stay extras alone."""
+    texts = _texts(node)
+    joints = texts.get(words.JOINTS, "").split()
+    numbers = read_numbers(texts.get(words.COEFFICIENTS, "")) or ()
+    interfaces = [child for child in node.children if child.tag == "command_interface" and _texts(child).get(words.TYPE)]
+    if not interfaces or not joints or len(joints) != len(numbers) or any(name not in builder.joints for name in joints):
+        return
+    name = node.attributes.get("name", "")
+    key = builder.fresh("tendon", texts.get(words.TENDON, "") or name, node.origin)
+    arcs: tuple[RobotArc, ...] = tuple(Arc(builder.joints[joint], 1, (number,)) for joint, number in zip(joints, numbers, strict=True))
+    builder.edges[key] = Edge(Tendon(FIXED), arcs)
+    for interface in interfaces:
+        _drive(interface, name, key, builder)
 
 
 def _texts(node: Node) -> dict[str, str]:
