@@ -25,7 +25,7 @@ from hymeko_x.rewrite import Options
 if TYPE_CHECKING:
     from pathlib import Path
 
-BOUNDS = {"urdf": 0.40, "mjcf": 0.75}
+BOUNDS = {"urdf": 0.35, "mjcf": 0.75}
 """HyMeKo against each format, median over the development files."""
 
 USDA_BOUND = 0.15

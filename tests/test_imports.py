@@ -168,7 +168,7 @@ ROOMS = re.compile(r"(formats|frontends|backends|verify/readers)/(?!__init__\.py
 
 STILL_NAMED = frozenset(
     {
-        "xml/unread.py",  # the prefix of a namespace, which is called as the format is
+        "xml/namespaces.py",  # the prefix of a namespace, which is called as the format is
     }
 )
 """Files that still name a format, to become fewer."""

@@ -246,6 +246,9 @@ JSON = Format(
 FORMATS: tuple[Format, ...] = (HYMEKO, URDF, XACRO, MJCF, USD, USDC, USDZ, SDF, JSON)
 """Every format that can be read, written or verified. Where two claim a suffix, the content decides, and then the first one."""
 
+FOREIGN = frozenset({*(format.family for format in FORMATS), "srdf"})
+"""Blocks and fields of these names hold extras of a format in HyMeKo text."""
+
 OWN = HYMEKO
 """The project's own language: what text without suffix and root element is, and what `import` writes."""
 

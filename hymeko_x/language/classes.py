@@ -223,5 +223,6 @@ def units_of(root: Node) -> dict[str, str]:
     words: list[str] = []
     for item in root.items:
         if isinstance(item, Node) and item.name == "units" and not item.stereotypes and not isinstance(item.name, QuotedName):
-            words += [word for field in item.items if isinstance(field, Field) for word in (field.name, _word(field.value)) if word]
+            fields = (field for field in item.items if isinstance(field, Field) and field.name != "digits")
+            words += [word for field in fields for word in (field.name, _word(field.value)) if word]
     return {**PLAIN_UNITS, **dict(zip(words[::2], words[1::2], strict=False))}

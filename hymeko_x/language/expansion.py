@@ -64,6 +64,19 @@ class Scope(Struct):
                 yield found
             here = here.parent
 
+    def define(self, path: tuple[str, ...]) -> str | None:
+        """The full name of an element that is defined now, and its place from here outwards; None where there is no such scope."""
+        here: Scope | None = self
+        while here is not None:
+            inner: Scope | None = here
+            for step in path[:-1]:
+                inner = inner.scopes.get(step) if inner is not None else None
+            if inner is not None:
+                inner.elements.add(path[-1])
+                return inner.full(path[-1])
+            here = here.parent
+        return None
+
     def _root(self) -> Scope:
         here = self
         while here.parent is not None:

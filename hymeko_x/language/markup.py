@@ -2,7 +2,8 @@
 
 ``<option timestep="0.01"><flag gravity="disable"/></option>`` is ``option { timestep 0.01 flag { gravity=disable } }``.
 Fields are attributes; where an element holds texts, its attributes stand in parentheses and its fields are elements with a
-text: ``<gazebo reference="hip"><mu1>0.9</mu1></gazebo>`` is ``gazebo(reference=hip) { mu1 0.9 }``.
+text: ``<gazebo reference="hip"><mu1>0.9</mu1></gazebo>`` is ``gazebo(hip) { mu1 0.9 }``, for a name alone in parentheses is the
+attribute ``reference``. Comments are comments.
 Numbers and words are plain where their text is the shortest there is, everything else is quoted. Entities stay as they are.
 """
 
@@ -13,12 +14,17 @@ from typing import NamedTuple, TypeGuard
 
 from hymeko_x import formats
 from hymeko_x.ir.values import number_text
-from hymeko_x.language.syntax import Field, Item, Node, Parameter, QuotedName, Ref, Value, is_list
+from hymeko_x.language.syntax import Comment, Field, Item, Node, Parameter, QuotedName, Ref, Value, is_list
+from hymeko_x.xml.text import comment_markup
 
 TEXT = QuotedName("text()")
 """The field that holds the text of an element with attributes."""
 COMMENT = QuotedName("//")
-"""The field that holds a comment, with the blanks that it has."""
+"""The field that holds a comment, with the blanks that it has, which is not a comment of the text with one blank on each side."""
+NAMESPACES = "xmlns"
+"""The field that declares prefixes of namespaces by name alone, in the block of the whole."""
+REFERENCE = "reference"
+"""The attribute that a name alone in parentheses stands for."""
 
 _NAME = r"[^\W\d][\w:.-]*"
 _TOKEN = re.compile(
@@ -73,9 +79,29 @@ def are_several(value: object) -> TypeGuard[tuple[Value, ...]]:
     )
 
 
+def is_foreign(item: Item) -> bool:
+    """Whether an item is the block of another format."""
+    return isinstance(item, Node) and item.name in formats.FOREIGN and not item.edge and not isinstance(item.name, QuotedName)
+
+
+def is_step(item: Item) -> bool:
+    """Whether an item in the block of another format leads to a node of the element: `joint/`."""
+    return isinstance(item, Node) and isinstance(item.name, QuotedName) and item.name.endswith("/")
+
+
+def sound_comment(text: str) -> bool:
+    """Whether a comment reads back as it is."""
+    return text == text.strip() and "\0" not in text and ("*/" not in text or "\n" not in text) and "\r" not in text
+
+
 def separate(item: Item) -> list[Item]:
-    """The elements of an item that has a list of texts in parentheses: one for each of them, which is like the others."""
+    """The elements of an item with several names alone or a list of texts in parentheses: one for each, which is like the others."""
     parameters = item.parameters if isinstance(item, Node) else None
+    names = [parameter for parameter in parameters or () if parameter.default is None]
+    if isinstance(item, Node) and parameters is not None and len(names) > 1:
+        first = parameters.index(names[0])
+        others = [[parameter for parameter in part if parameter.default is not None] for part in (parameters[:first], parameters[first:])]
+        return [item._replace(parameters=(*others[0], name, *others[1])) for name in names]
     place = next((place for place, each in enumerate(parameters or ()) if are_several(each.default)), None)
     if place is None or not isinstance(item, Node) or parameters is None:
         return [item]
@@ -92,7 +118,7 @@ class _Open(NamedTuple):
 
     tag: str
     attributes: list[tuple[str, str]]
-    children: list[Node | Field]
+    children: list[Node | Field | Comment]
     texts: list[str]
 
 
@@ -117,7 +143,9 @@ def _read(xml: str) -> Node | None:
         if (text := match["text"]) is not None:
             stack[-1].texts.append(text)
         elif (comment := match["comment"]) is not None:
-            stack[-1].children.append(Field(COMMENT, comment))
+            text = comment[1:-1]
+            is_plain = bool(text) and match[0] == comment_markup(text) and sound_comment(text)
+            stack[-1].children.append(Comment(text) if is_plain else Field(COMMENT, comment))
         elif (tag := match["tag"]) is not None:
             stack.append(_Open(tag, _ATTRIBUTE.findall(match["attributes"]), [], []))
             if match["ends"]:
@@ -129,7 +157,7 @@ def _read(xml: str) -> Node | None:
         if len(stack) > _MAX_DEPTH:
             return None
     only = root.children[0] if len(stack) == 1 and len(root.children) == 1 and not root.texts else None
-    return _as_node(only) if only is not None else None
+    return None if only is None or isinstance(only, Comment) else _as_node(only)
 
 
 def _as_node(item: Node | Field) -> Node:
@@ -147,11 +175,19 @@ def _close(stack: list[_Open], *, empty: bool) -> None:
     if not children and not empty:
         children = [Field(TEXT, value_of_text(text))]
     values = [(name, value_of_text(value)) for name, value in attributes]
-    if any(isinstance(child, Field) for child in children):
-        node = Node(tag, tuple(children), parameters=tuple(Parameter(name, value) for name, value in values))
+    parameters = tuple(_parameter(name, value) for name, value in values)
+    if any(isinstance(child, Field) for child in children) or any(parameter.default is None for parameter in parameters):
+        node = Node(tag, tuple(children), parameters=parameters)
     else:
         node = Node(tag, (*(Field(name, value) for name, value in values), *children))
     stack[-1].children.append(node)
+
+
+def _parameter(name: str, value: Value) -> Parameter:
+    """An attribute in parentheses: a name alone where it is a reference by name."""
+    if name != REFERENCE or not isinstance(value, str | Ref) or not value:
+        return Parameter(name, value)
+    return Parameter(value.path[0] if isinstance(value, Ref) else QuotedName(value))
 
 
 def _spacing(xml: str) -> Spacing | None:
@@ -173,6 +209,9 @@ def markup_of(node: Node, spacing: Spacing | None) -> str | None:
         depth, item = stack.pop()
         if isinstance(item, str):
             parts.append(item)
+            continue
+        if isinstance(item, Comment):
+            parts.append(comment_markup(item.text))
             continue
         if not isinstance(item, Node | Field):
             return None
@@ -217,7 +256,7 @@ def _parts_of(node: Node) -> tuple[str | None, tuple[Item, ...]]:
         values = [(item.name, item.value) for item in node.items if isinstance(item, Field)]
         children: tuple[Item, ...] = tuple(item for item in node.items if not isinstance(item, Field))
     else:
-        values = [(parameter.name, parameter.default) for parameter in node.parameters]
+        values = [(REFERENCE, str(each.name)) if each.default is None else (each.name, each.default) for each in node.parameters]
         children = node.items
     texts = [(name, text_of_value(value)) for name, value in values]
     if any(text is None for _, text in texts):

@@ -8,6 +8,7 @@ from xml.parsers import expat
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal, refuse
+from hymeko_x.xml.namespaces import without_declared
 from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.text import NAME, attributes_text, comment_markup, escaped
 from hymeko_x.xml.tree import COMMENT_NODE
@@ -114,18 +115,6 @@ def _place_for(extra: Extra, tag: Tag) -> int:
     name = re.match(r"<([^\s/>]+)", extra.text)
     same = [place for place, child in enumerate(tag.children) if name and isinstance(child, Tag) and child.name == name[1]]
     return max(extra.index, same[-1] + 1) if same else extra.index
-
-
-def without_declared(text: str, declared: Mapping[str, str]) -> str:
-    """An element's text without the namespace declarations (attribute -> uri) right behind its name that stand further up already."""
-    name = re.match(r"<[^\s/>]+", text)
-    if name is None:
-        return text
-    rest = text[name.end() :]
-    known = [f' {attribute}="{escaped(uri)}"' for attribute, uri in declared.items()]
-    while (repeated := next((words for words in known if rest.startswith(words)), None)) is not None:
-        rest = rest.removeprefix(repeated)
-    return name[0] + rest
 
 
 def render(tag: Tag, depth: int = 0) -> list[str]:

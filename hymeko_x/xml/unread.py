@@ -5,12 +5,12 @@ No list of known tags decides what survives.
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.ir.mechanism import ROOT, Extra
-from hymeko_x.xml.text import attributes_text
+from hymeko_x.xml.layout import laid_out
+from hymeko_x.xml.namespaces import KNOWN_PREFIXES, PREFIX, with_declared
 from hymeko_x.xml.tree import COMMENT_NODE, INSTRUCTION_NODE
 
 if TYPE_CHECKING:
@@ -25,13 +25,6 @@ COMMENT = "comment"
 PRECEDING = "preceding"
 FOLLOWING = "following"
 """The paths of what stands before and after the root element."""
-
-KNOWN_PREFIXES = {
-    "xacro": "http://www.ros.org/wiki/xacro",
-    "drake": "http://drake.mit.edu",
-    "gz": "http://gazebosim.org/schema",
-}
-"""What an undeclared prefix stands for; others become ``urn:prefix``."""
 
 
 def unread_extras(node: Node, path: str, format_name: str, verbatim: Callable[[Node], str]) -> Iterator[Extra]:
@@ -59,7 +52,7 @@ def extras_around(document: Document, format_name: str) -> list[Extra]:
 
 
 class Unread:
-    """Collects what is unread in a file, whose bytes are ``data`` in UTF-8, element by element; elements keep their text to the byte."""
+    """Collects what is unread in a file, whose bytes are ``data`` in UTF-8, element by element; elements keep their text."""
 
     def __init__(self, root: Node, data: bytes, format_name: str, report: Report) -> None:
         self._root = root
@@ -111,14 +104,15 @@ class Unread:
     # ---- text of elements ------------------------------------------------------------------------------------------------
 
     def verbatim(self, node: Node) -> str:
-        """The element as the file has it, with the namespace declarations that it needs from further up."""
+        """The element as the file has it but for its layout, with the namespace declarations that it needs from further up."""
         self._declare_prefixes(node)
         end = node.end
         closed_itself = not node.children and node.text is None and self._data[end - 2 : end] == b"/>"
         if not closed_itself:
             end = self._data.index(b">", end) + 1
+        is_outer = node.parent is None or _place_below_owner(node.parent) == (ROOT, "")
         text = self._data[node.start : end].decode().replace("\r\n", "\n").replace("\r", "\n")
-        return _with_declarations(text, node)
+        return with_declared(laid_out(text, 1 if is_outer else 2), _declared_above(node))
 
     def _declare_prefixes(self, node: Node) -> None:
         """Declare at the root the prefixes in an element that are declared nowhere."""
@@ -167,17 +161,13 @@ def _below(path: str, step: str) -> str:
     return f"{path}/{step}" if path else step
 
 
-def _with_declarations(text: str, node: Node) -> str:
-    """The text of an element with the declarations of those prefixes that it uses and does not declare."""
-    added: dict[str, str] = {}
+def _declared_above(node: Node) -> dict[str, str]:
+    """The namespaces (attribute -> uri) that the elements around a node declare, the innermost ones first."""
+    found: dict[str, str] = {}
     above = node.parent
     while above is not None:
         for name, uri in above.attributes.items():
-            if name.startswith("xmlns:") and f"{name[6:]}:" in text and f"{name}=" not in text:
-                added.setdefault(name, uri)
+            if name.startswith(PREFIX):
+                found.setdefault(name, uri)
         above = above.parent
-    if not added:
-        return text
-    name_end = re.match(r"<[^\s/>]+", text)
-    assert name_end is not None
-    return text[: name_end.end()] + attributes_text(added) + text[name_end.end() :]
+    return found

@@ -54,7 +54,7 @@ arm : robot { // in the root
 """
 WHERE = {
     "<before>": ["head\n   two", "imported", "axis"],
-    "arm": ["in the root", "mine", "behind a block", "parameter", "in a template", "the left", "step"],
+    "arm": ["in the root", "mine", "behind a block", "parameter", "in a template", "the left"],
     "base": ["torso", "weighed", "why"],
     "visual": ["z", "size"],
     "shape": ["deep"],
@@ -62,6 +62,7 @@ WHERE = {
     "left_s": ["arc", "careful"],
     "x": ["instance"],
     "f": ["place", "rpy"],
+    "option": ["step"],
     "<behind>": ["tail"],
 }
 
@@ -79,10 +80,13 @@ def texts_of(text: str) -> Counter[str]:
 
 
 def without_comments(mechanism: Mechanism) -> Mechanism:
-    """The mechanism without comments, which take places among its other extras."""
+    """The mechanism without comments, which take places among its other extras, also without those in elements of other formats."""
 
     def others(extras: tuple[Extra, ...]) -> Iterator[Extra]:
-        return (replace(extra, index=0) for extra in extras if extra.format != "comment")
+        return (replace(extra, index=0, text=bare(extra.text)) for extra in extras if extra.format != "comment")
+
+    def bare(text: str) -> str:
+        return re.sub(r"></\w+>", "/>", re.sub(r"<!--.*?-->", "", text, flags=re.DOTALL))
 
     kept = {key: tuple(others(extras)) for key, extras in mechanism.extras.items()}
     return replace(mechanism, extras={key: extras for key, extras in kept.items() if extras})

@@ -19,7 +19,7 @@ def extras(text: str, key: Id = ROOT) -> list[tuple[str, str]]:
 @pytest.mark.parametrize(
     "foreign",
     [
-        '<gazebo reference="a">\n    <mu1>0.2</mu1>\n\t<sensor name="s"/>\n  </gazebo>',
+        '<gazebo reference="a">\n    <mu1>0.2</mu1>\n    <sensor name="s"/>\n  </gazebo>',
         '<mujoco><compiler meshdir="m"/></mujoco>',
         '<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware></ros2_control>',
         '<anything at="all"><![CDATA[<raw> & text]]></anything>',

@@ -12,7 +12,8 @@ from msgspec.structs import replace
 
 from hymeko_x.backends.hymeko.assemblies import Instance, assemblies, pieces_of, templates
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
-from hymeko_x.backends.hymeko.extras import foreign_items, is_standing, sound_comment, standing_items
+from hymeko_x.backends.hymeko.extras import foreign_items, is_standing, standing_items, without_namespaces
+from hymeko_x.backends.hymeko.implied import fits_in, implied_actuators
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
 from hymeko_x.backends.hymeko.nesting import name_of, nesting_of
 from hymeko_x.backends.hymeko.parts import attached_arcs, part_items
@@ -28,6 +29,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.provenance import kept_notations
 from hymeko_x.language.classes import PLAIN_UNITS, given_fields, is_class, is_section
+from hymeko_x.language.markup import sound_comment
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, QuotedName, Ref, Stereotype
 from hymeko_x.language.templates import standard_templates
@@ -61,6 +63,7 @@ def write_flat(mechanism: Mechanism, options: Options, report: Report) -> Packag
 
 def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
     """The syntax tree of a mechanism; ``flat`` as :func:`write_flat`."""
+    mechanism = without_namespaces(mechanism)
     plain = _is_plain(mechanism)
     inline = inline_assets(mechanism)
     root = mechanism.notation(ROOT, ROOT_NAME)
@@ -74,13 +77,14 @@ def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
         given_names(mechanism, inline),
         mimics,
         attached_arcs(mechanism),
-        ExplicitAngles() if flat else shortest_angles(mechanism),
+        ExplicitAngles() if flat else shortest_angles(mechanism, may_round=around is None),
         nesting=nesting_of(mechanism, name),
         around=around,
         is_flat=flat,
     )
     if not flat:
         sheet = replace(sheet, names={}, shared=shared_joints(mechanism, mimics, _behind_comments(sheet)))
+        sheet.implied.update(implied_actuators(mechanism, sheet.names))
     items = _settings(sheet, plain)
     items += [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})] if plain or flat else _grouped(sheet)
     header = mechanism.name if root is not None else ""
@@ -120,6 +124,8 @@ def _settings(sheet: HymekoSheet, plain: bool) -> list[Item]:
     items: list[Item] = []
     if not plain and not sheet.angles.degrees:
         items.append(Node("units", (Field("angle"), Field("rad"))))
+    if not plain and sheet.angles.digits:
+        items.append(Node("units", (Field("digits", float(sheet.angles.digits)),)))
     if sheet.files:
         items.append(Field("files", sheet.files))
     notations = {
@@ -135,10 +141,12 @@ def _settings(sheet: HymekoSheet, plain: bool) -> list[Item]:
 
 def _grouped(sheet: HymekoSheet) -> list[Item]:
     """The elements with their stereotypes, those of one prefix in assemblies."""
-    rows = _rows(sheet)
     refused: frozenset[str] = frozenset()
     for tries in range(_MOST_TRIES + 1):
+        rows = _rows(sheet)
         homes = assemblies(rows, sheet, refused) if tries < _MOST_TRIES else {}
+        if not _with_implied(homes, sheet):
+            continue
         names = {key.name: home for key, home in homes.items()}
         within = {home: replace(sheet, homes=names, inside=home) for home in ("", *names.values())}
         texts = [_texts(within, row, homes) for row in rows]
@@ -147,6 +155,15 @@ def _grouped(sheet: HymekoSheet) -> list[Item]:
         refused |= sheet.clashes
         sheet.clashes.clear()
     return _assembled(pieces_of(rows, texts, homes), _given(sheet))
+
+
+def _with_implied(homes: dict[Id, str], sheet: HymekoSheet) -> bool:
+    """Put implied actuators where their drives stand; False where some cannot be named there, which are implied no longer."""
+    unfit = [actuator for actuator, drive in sheet.implied.items() if not fits_in(homes.get(drive, ""), actuator, sheet.names)]
+    homes.update({actuator: homes[drive] for actuator, drive in sheet.implied.items() if drive in homes})
+    for actuator in unfit:
+        del sheet.implied[actuator]
+    return not unfit
 
 
 def _given(sheet: HymekoSheet) -> Given:
@@ -247,7 +264,8 @@ def _order(sheet: HymekoSheet) -> list[Id]:
 
 
 def _stands_alone(sheet: HymekoSheet, key: Id) -> bool:
-    if key in sheet.inline or key.kind in _INLINE_EDGES or key in sheet.mimics or key in sheet.attached_edges or key in sheet.followers:
+    elsewhere = (sheet.implied, sheet.inline, sheet.mimics, sheet.attached_edges, sheet.followers)
+    if key.kind in _INLINE_EDGES or any(key in place for place in elsewhere):
         return False
     if key in sheet.nesting.outer or key in sheet.nesting.edges:
         return False

@@ -10,6 +10,7 @@ from hymeko_x.backends.hymeko.parts import word_fields
 from hymeko_x.backends.hymeko.sheet import written_items
 from hymeko_x.backends.hymeko.values import pose_value, value_of
 from hymeko_x.formats.hymeko import SHAPE_ROLES, SHAPE_WORDS, SOLIDS
+from hymeko_x.formats.hymeko.files import SHORT, files_of
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.names import Names
@@ -190,7 +191,7 @@ def inline_assets(mechanism: Mechanism) -> dict[Id, Id]:
             continue
         part = mechanism.graph.vertices[key]
         if isinstance(part, parts.Mesh):
-            plain = part == parts.Mesh(part.uri, part.scale) and part.uri is not None and not part.uri.startswith("~/")
+            plain = part == parts.Mesh(part.uri, part.scale) and part.uri is not None and not part.uri.startswith(SHORT)
         else:
             users = [arc for _, edge, arc in mechanism.graph.edges_at(key)]
             bare = isinstance(part, parts.Material) and part == parts.Material(None, part.rgba) and part.rgba is not None
@@ -216,7 +217,7 @@ def given_names(mechanism: Mechanism, inline: Mapping[Id, Id]) -> frozenset[Id]:
 
 
 def files_prefix(mechanism: Mechanism) -> str:
-    """The folder that most files share, when writing it once is shorter; empty when there is none."""
+    """The folder that most files share, and their ending, when writing them once is shorter; empty when there is none."""
     uris = [part.uri for part in mechanism.graph.vertices.values() if isinstance(part, parts.Mesh | parts.Texture) and part.uri]
     folders: dict[str, int] = {}
     for uri in uris:
@@ -226,4 +227,5 @@ def files_prefix(mechanism: Mechanism) -> str:
             folder = folder[: folder.rfind("/", 0, len(folder) - 1) + 1]
     saved = {folder: (len(folder) - 2) * count - len(folder) - 7 for folder, count in folders.items() if not folder.endswith("//")}
     best = max(saved, key=lambda folder: (saved[folder], folder), default="")
-    return best if best and saved[best] > 0 and not any(uri.startswith("~/") for uri in uris) else ""
+    is_short = best and saved[best] > 0 and "*" not in best and not any(uri.startswith(SHORT) for uri in uris)
+    return files_of(best, uris) if is_short else ""

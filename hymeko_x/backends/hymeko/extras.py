@@ -2,25 +2,37 @@
 
 from __future__ import annotations
 
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.language import markup
 from hymeko_x.language.classes import definitions_of, is_section
-from hymeko_x.language.markup import INDENT, PLACE, TEXT, block_of, markup_of, usual_spacing
+from hymeko_x.language.markup import INDENT, NAMESPACES, PLACE, TEXT, block_of, markup_of, sound_comment, usual_spacing
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Comment, Field, Item, Node, QuotedName, Ref, Value, is_list
+from hymeko_x.xml.namespaces import KNOWN_PREFIXES, PREFIX, with_declared, with_texts, without_declared
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping, Sequence
 
-    from hymeko_x.ir.mechanism import Extra
+    from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.language.markup import Spacing
 
 _FORMATS = FOREIGN - {"hymeko"}
 _WIDEST = 110
 """Letters of an element with a list of texts, without its content."""
-_OWN_WORDS = frozenset({PLACE, INDENT, TEXT, markup.COMMENT})
+_OWN_WORDS = frozenset({PLACE, INDENT, TEXT, markup.COMMENT, NAMESPACES})
+
+
+def without_namespaces(mechanism: Mechanism) -> Mechanism:
+    """The mechanism in whose elements of a format no prefix is declared that the whole declares, where that can be undone."""
+
+    def bare(text: str, declared: Mapping[str, str]) -> str:
+        short = without_declared(text, declared)
+        return short if with_declared(short, declared) == text else text
+
+    return with_texts(mechanism, bare)
 
 
 def with_extras(items: list[Item], extras: Iterable[Extra]) -> list[Item]:
@@ -54,9 +66,9 @@ def standing_items(extras: list[Extra], *, classes: bool = False) -> list[Item]:
         if definitions is not None:
             items += definitions
             continue
-        last = items[-1] if items else None
-        if node is not None and isinstance(last, Node) and last.name == extra.format:
-            items[-1] = last._replace(items=_with_element(last.items, node))
+        block = _block_before(items, extra.format) if node is not None else None
+        if node is not None and block is not None:
+            _join(items, block, node)
         elif node is not None:
             items.append(Node(extra.format, (node,)))
         elif extra.format == "comment" and is_standing(extra):
@@ -64,6 +76,20 @@ def standing_items(extras: list[Extra], *, classes: bool = False) -> list[Item]:
         else:
             items.append(verbatim(extra, at_root=True))
     return items
+
+
+def _block_before(items: Sequence[Item], format: str) -> int | None:
+    """The place of the last block of a format if only comments stand behind it."""
+    place = next((place for place in range(len(items) - 1, -1, -1) if not isinstance(items[place], Comment)), -1)
+    return place if place >= 0 and isinstance(items[place], Node) and getattr(items[place], "name", "") == format else None
+
+
+def _join(items: list[Item], place: int, node: Node) -> None:
+    """Put an element, and the comments before it, into the block that stands at a place."""
+    block = items[place]
+    assert isinstance(block, Node)
+    comments = tuple(items[place + 1 :])
+    items[place:] = [block._replace(items=(*block.items, *comments, node) if comments else _with_element(block.items, node))]
 
 
 def _with_element(items: tuple[Item, ...], node: Node) -> tuple[Item, ...]:
@@ -74,8 +100,15 @@ def _with_element(items: tuple[Item, ...], node: Node) -> tuple[Item, ...]:
 
 
 def _merged(first: Node, second: Node) -> Node | None:
-    """Two elements as one with a list of texts; None where they differ otherwise, or the list is long."""
+    """Two elements as one with several names or a list of texts; None where they differ otherwise, or that is long."""
     old, new = first.parameters or (), second.parameters or ()
+    names = [parameter for parameter in old if parameter.default is None]
+    name = next((parameter for parameter in new if parameter.default is None), None)
+    if names and name is not None:
+        place = old.index(names[0])
+        others = (*old[:place], *old[place + len(names) :])
+        alike = (*others[:place], name, *others[place:]) == new and name not in names and first._replace(parameters=new) == second
+        return _short(second._replace(parameters=(*others[:place], *names, name, *others[place:]))) if alike else None
     differing = [place for place, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
     if len(old) != len(new) or len(differing) != 1 or first._replace(parameters=new) != second:
         return None
@@ -84,8 +117,11 @@ def _merged(first: Node, second: Node) -> Node | None:
     texts = (*(known if is_list(known) else (known,)), new[place].default)
     if old[place].name != new[place].name or not markup.are_several(texts):
         return None
-    merged = second._replace(parameters=(*old[:place], new[place]._replace(default=texts), *old[place + 1 :]))
-    return merged if len(print_item(merged._replace(items=()))) <= _WIDEST else None
+    return _short(second._replace(parameters=(*old[:place], new[place]._replace(default=texts), *old[place + 1 :])))
+
+
+def _short(node: Node) -> Node | None:
+    return node if len(print_item(node._replace(items=()))) <= _WIDEST else None
 
 
 def is_standing(extra: Extra) -> bool:
@@ -104,11 +140,6 @@ def _standing_block(extra: Extra) -> Node | None:
     found = block_of(extra.text)
     usual = usual_spacing(extra.format, at_root=True)
     return found[0] if found is not None and markup_of(found[0], usual) == extra.text else None
-
-
-def sound_comment(text: str) -> bool:
-    """Whether a comment reads back as it is."""
-    return text == text.strip() and "\0" not in text and ("*/" not in text or "\n" not in text) and "\r" not in text
 
 
 def is_comment_in_block(extra: Extra) -> bool:
@@ -172,7 +203,10 @@ def _is_text(node: Node) -> bool:
 
 def _place_items(extras: list[Extra], format: str, *, at_root: bool) -> list[Item] | None:
     """The attributes and elements of one place; None where a block cannot represent one of them."""
-    items: list[Item] = []
+    known = list(takewhile(_is_known_namespace, extras))
+    names = tuple(Ref((extra.path.removeprefix(f"@{PREFIX}"),)) for extra in known)
+    items: list[Item] = [Field(NAMESPACES, names)] if names else []
+    extras = extras[len(known) :]
     children: list[Item] = []
     place = 0
     spacing = usual_spacing(format, at_root=at_root)
@@ -195,6 +229,10 @@ def _place_items(extras: list[Extra], format: str, *, at_root: bool) -> list[Ite
         place = extra.index + 1
         children.append(node)
     return [*items, *children]
+
+
+def _is_known_namespace(extra: Extra) -> bool:
+    return KNOWN_PREFIXES.get(extra.path.removeprefix(f"@{PREFIX}")) == extra.text and extra.path.startswith("@")
 
 
 def _indent(spacing: Spacing | None) -> Field:

@@ -11,6 +11,7 @@ from hymeko_x.backends.hymeko.nesting import Nesting, name_of
 from hymeko_x.backends.hymeko.values import pose_value, value_of
 from hymeko_x.formats import native_format
 from hymeko_x.formats.hymeko import CHILD_CLASS, NAMED_AFTER_ID, PARTS, SHORT_TYPES, TARGETS, attached_key
+from hymeko_x.formats.hymeko.files import short_uri
 from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.mechanism import WORLD, Id
@@ -32,11 +33,12 @@ _DIRECTIONS = {1: "+", 0: "~", -1: "-"}
 class HymekoSheet(Struct, frozen=True):
     """The text under construction: the mechanism, and where the text of each element stands.
 
-    ``files``: the prefix that files have in common; ``inline``: meshes and colours that are defined where a shape uses them, with the
-    first shape that does; ``given_names``: those among them that have an id there; ``mimics``: couplings in the block of the joint
-    that follows; ``shared``: joints that stand in the edge of the one that they follow, by that one; ``attached``: arcs of mounts,
-    drives and the like in the block of the vertex that they attach; ``angles``: the unit
-    of plain angles; ``homes``: the assemblies of elements, by the elements' names, and ``inside``: the one that is being printed;
+    ``files``: the folder and the ending that files have in common; ``inline``: meshes and colours that are defined where a shape uses
+    them, with the first shape that does; ``given_names``: those among them that have an id there; ``mimics``: couplings in the block
+    of the joint that follows; ``shared``: joints that stand in the edge of the one that they follow, by that one; ``implied``: the
+    drives that name actuators without a text, by those; ``attached``: arcs of mounts, drives and the like in the block of the vertex
+    that they attach; ``angles``: the unit of plain angles; ``homes``: the assemblies of elements, by the elements' names, and
+    ``inside``: the one that is being printed;
     ``nesting``: what stands in the blocks of data, and ``within``: the element whose block is being printed;
     ``around``: the class in force at joints, shapes and frames, where classes are stereotypes of this text;
     ``is_flat``: every shape stands by itself;
@@ -56,6 +58,7 @@ class HymekoSheet(Struct, frozen=True):
     within: Id | None = None
     around: Mapping[Id, str] | None = None
     shared: Mapping[Id, tuple[Id, ...]] = field(default_factory=dict)
+    implied: dict[Id, Id] = field(default_factory=dict)
     is_flat: bool = False
     clashes: set[str] = field(default_factory=set)
     names: dict[str, list[str]] = field(default_factory=dict)
@@ -133,7 +136,7 @@ class HymekoSheet(Struct, frozen=True):
 
     def short_uri(self, uri: str) -> str:
         """A file's uri behind the common prefix, where it has it."""
-        return f"~/{uri.removeprefix(self.files)}" if self.files and uri.startswith(self.files) else uri
+        return short_uri(uri, self.files)
 
     def arc(self, kind: str, arc: RobotArc, kinds: tuple[str, ...] | None = None) -> ArcItem:
         """An arc of an edge of this kind. ``kinds``: what it may lead to, the likeliest first."""

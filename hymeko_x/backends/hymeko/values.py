@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
 from hymeko_x.formats.hymeko import TURNING
-from hymeko_x.formats.hymeko.units import unit_factor
+from hymeko_x.formats.hymeko.units import MOST_DIGITS, rounded, unit_factor
 from hymeko_x.ir import parts
 from hymeko_x.ir.values import NO_ROTATION, Pose, number_text
 from hymeko_x.language.syntax import Quantity, Query, Ref
@@ -22,22 +23,32 @@ if TYPE_CHECKING:
 
 _DEGREE = unit_factor("deg") or 1.0
 _DIGITS = (6, 10, 13, 15, 16, 17)
+_FEW_DIGITS = (2, 3, 4, 5)
+_FEWEST = 5
+"""An angle with fewer digits is not taken for one that was rounded."""
 _UNITS_BLOCK = 15  # letters of `units { angle rad }`
 _WORD = re.compile(r"[^\W\d]\w*")
 _NO_WORDS = frozenset({"inf", "nan", "rel", "seq", "concurrent", "use", "import", "using", "const", "as"})
 
 
 class Angles(Struct, frozen=True):
-    """The unit of plain angles: degrees or radians."""
+    """The unit of plain angles: degrees or radians. ``digits`` are those that an angle in radians has; 0 = as many as a double."""
 
     degrees: bool
+    digits: int = 0
 
     def value(self, radians: float) -> Value:
-        """An angle in the unit in force; with a unit of its own where degrees would not read back to the same double."""
+        """An angle in the unit in force; with a unit of its own where degrees are longer, or not the same double."""
         if not self.degrees:
             return radians
-        plain = in_degrees(radians)
-        return Quantity(radians, "rad") if plain is None else plain
+        plain = in_degrees(radians, self.digits)
+        is_short = plain is not None and len(number_text(plain)) <= len(number_text(radians)) + 3
+        return plain if plain is not None and is_short else Quantity(radians, "rad")
+
+    def length(self, radians: float) -> int:
+        """The letters of an angle."""
+        value = self.value(radians)
+        return len(number_text(value)) if type(value) is float else len(number_text(radians)) + 3
 
     def values(self, radians: Iterable[float]) -> tuple[Value, ...]:
         """Several angles."""
@@ -99,24 +110,27 @@ def pose_value(pose: Pose, angles: Angles) -> tuple[Value, ...]:
     return (pose.xyz, pose.quat)
 
 
-def in_degrees(radians: float) -> float | None:
-    """The shortest number of degrees that reads back to the same double, or None."""
-    for digits in _DIGITS:
+def in_degrees(radians: float, rounding: int = 0) -> float | None:
+    """The shortest number of degrees that reads back to the same double, rounded to so many digits in radians; or None."""
+    for digits in (*_FEW_DIGITS, *_DIGITS) if rounding else _DIGITS:
         plain = float(f"{radians / _DEGREE:.{digits}g}")
-        if plain * _DEGREE == radians:
+        if rounded(plain * _DEGREE, rounding) == radians:
             return plain
     return None
 
 
-def shortest_angles(mechanism: Mechanism) -> Angles:
-    """The unit in which all angles of the mechanism together take fewer letters."""
-    radians, degrees = _UNITS_BLOCK, 0
-    for angle in _angles(mechanism):
-        plain = in_degrees(angle)
-        length = len(number_text(angle))
-        radians += length
-        degrees += length + 3 if plain is None else len(number_text(plain))
-    return Angles(degrees < radians)
+def shortest_angles(mechanism: Mechanism, *, may_round: bool) -> Angles:
+    """The unit, and the rounding if there may be one, with which all angles of the mechanism together take fewest letters."""
+    count = Counter(_angles(mechanism))
+    digits = Counter(len(number_text(abs(angle)).replace(".", "").lstrip("0")) for angle in count)
+    usual = [number for number, _ in digits.most_common() if may_round and _FEWEST <= number < MOST_DIGITS]
+    settings = [Angles(True), Angles(False), *(Angles(True, number) for number in dict.fromkeys((*usual[:2], *sorted(usual)[-1:])))]
+
+    def length(angles: Angles) -> int:
+        block = 0 if angles == settings[0] else _UNITS_BLOCK
+        return block + sum(number * angles.length(angle) for angle, number in count.items())
+
+    return min(settings, key=length)
 
 
 def _angles(mechanism: Mechanism) -> Iterator[float]:

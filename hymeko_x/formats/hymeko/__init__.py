@@ -271,9 +271,7 @@ TARGETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 )
 """The kinds that a reference in an edge may mean, the likeliest first; empty = any kind."""
 
-FOREIGN = frozenset({*(format.family for format in formats.FORMATS), "srdf"})
-"""Fields of these names hold extras of a format."""
-
+FOREIGN = formats.FOREIGN
 SETTINGS = FOREIGN | {"extra", "written", "files", "scope"}
 """Fields in the root that are about the whole."""
 

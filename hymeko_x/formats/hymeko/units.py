@@ -21,6 +21,9 @@ _OTHER |= {"W": 1.0, "V": 1.0, "A": 1.0, "%": 1e-2}
 BASE_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType({"length": _LENGTH, "angle": _ANGLE, "mass": _MASSES, "time": _TIME})
 """The dimensions that a `units { }` block may set, and their units."""
 
+MOST_DIGITS = 16
+"""Doubles have hardly more decimal digits."""
+
 _FACTORS = {**_LENGTH, **_ANGLE, **_MASSES, **_TIME, **_FORCE, **_OTHER}
 
 
@@ -34,6 +37,11 @@ def unit_factor(unit: str) -> float | None:
             return None
         factor *= _FACTORS[name] ** power
     return factor
+
+
+def rounded(number: float, digits: int) -> float:
+    """A number with so many decimal digits, as `units { digits 12 }` asks of angles; 0 leaves it as it is."""
+    return float(f"{number:.{digits}g}") if digits else number
 
 
 def _factors(unit: str) -> Iterator[tuple[str, int | None]]:

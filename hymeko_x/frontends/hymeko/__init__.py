@@ -19,8 +19,9 @@ from hymeko_x.frontends.hymeko.bodies import is_base_arc, read_body, read_fixed
 from hymeko_x.frontends.hymeko.builder import HymekoBuilder, without_implied
 from hymeko_x.frontends.hymeko.changes import change_element
 from hymeko_x.frontends.hymeko.comments import standing_comment, with_all_comments
-from hymeko_x.frontends.hymeko.extras import is_foreign, read_extra, read_foreign
+from hymeko_x.frontends.hymeko.extras import read_extra, read_foreign, with_namespaces
 from hymeko_x.frontends.hymeko.heritage import with_heritage
+from hymeko_x.frontends.hymeko.implied import imply_actuators
 from hymeko_x.frontends.hymeko.instances import changes_in, declare_instance, frames_on_bodies, place_instance, read_instances
 from hymeko_x.frontends.hymeko.joints import read_joint, unit_axis
 from hymeko_x.frontends.hymeko.kinds import infer_kinds
@@ -30,7 +31,7 @@ from hymeko_x.frontends.hymeko.parts import has_attached, read_part
 from hymeko_x.frontends.hymeko.published import with_named_fields
 from hymeko_x.frontends.hymeko.references import resolve_values
 from hymeko_x.frontends.hymeko.sharing import with_followers
-from hymeko_x.frontends.hymeko.values import ValueReader, read_units
+from hymeko_x.frontends.hymeko.values import ValueReader, read_digits, read_units
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Provenance
 from hymeko_x.ir.provenance import take_provenance
@@ -38,6 +39,7 @@ from hymeko_x.language.classes import with_classes
 from hymeko_x.language.comments import comments_in, without_comments
 from hymeko_x.language.errors import with_excerpt
 from hymeko_x.language.expansion import Change, Element, Expanded, Instance, Statement, expand
+from hymeko_x.language.markup import is_foreign
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Comment, Field, QuotedName, is_field
@@ -89,6 +91,7 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[i
     for element in elements:
         if _is_units(element.node):
             builder.reader.units = read_units(element.node, builder.reader)
+            builder.reader.digits = read_digits(element.node, builder.reader)
     elements = [element for element in elements if not _is_about_the_whole(element.node)]
     kinds = infer_kinds(expanded, elements)
     if kinds and OUTER.issuperset(kinds) and "robot" not in expanded.types:
@@ -97,14 +100,16 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[i
     expanded, kinds = with_followers(expanded, elements, kinds, builder.reader)
     _read_root(builder, expanded, kinds, instances)
     builder.source = take_provenance(builder.notations, FOREIGN, Provenance("hymeko", file=builder.reader.file))
-    declared = resolve_values(builder, _declare(builder, expanded, kinds, instances), expanded.items)
+    declared = _declare(builder, expanded, kinds, instances)
+    imply_actuators(builder, declared)
+    declared = resolve_values(builder, declared, expanded.items)
     for key, element in sorted(declared, key=lambda pair: pair[0].kind not in _FIRST):
         _read_element(builder, key, element)
     remove_folded(builder)
     _place_instances(builder, expanded, instances)
     if expanded.root and expanded.root != expanded.name:
         builder.note(ROOT, ROOT_NAME, expanded.root)
-    found = without_implied(builder.build(expanded.name, builder.source), builder.implied)
+    found = with_namespaces(without_implied(builder.build(expanded.name, builder.source), builder.implied))
     if not instances:
         return found
     return with_heritage(replace(found, places=builder.places, stored=builder.stored), tuple(instances.values()))
@@ -158,11 +163,12 @@ def _read_root(builder: HymekoBuilder, expanded: Expanded, kinds: list[str], ins
     remaining = iter(kinds)
     for item in expanded.items:
         if isinstance(item, Element) and _is_about_the_whole(item.node):
-            for comment in comments_in(item.node.items):
+            node = item.node if is_foreign(item.node) else without_comments(item.node)
+            for comment in () if node is item.node else comments_in(item.node.items):
                 extra = standing_comment(comment, place)
                 builder.add_extras(ROOT, extra)
                 place += not extra.path
-            place += _read_root_block(builder, without_comments(item.node), place)
+            place += _read_root_block(builder, node, place)
         elif isinstance(item, Element):
             place += 1 + _has_attached(next(remaining), item.node)
         elif isinstance(item, Instance):

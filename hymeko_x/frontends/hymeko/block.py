@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING, TypeVar
 
 from hymeko_x import codes
 from hymeko_x.formats.hymeko import CHILD_CLASS, FOREIGN
-from hymeko_x.frontends.hymeko.extras import is_foreign, read_extras, read_foreign, read_text
+from hymeko_x.frontends.hymeko.extras import read_extras, read_foreign, read_text
 from hymeko_x.frontends.hymeko.values import name_of
 from hymeko_x.ir.mechanism import Extra
 from hymeko_x.language.classes import IMPLIED
 from hymeko_x.language.comments import comments_in, without_comments
+from hymeko_x.language.markup import is_foreign
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, QuotedName, is_list
 
@@ -45,7 +46,7 @@ class Block:
             if isinstance(item, Field):
                 self._field(item)
             elif isinstance(item, Node):
-                self._keep_comments(comments_in(item.items))
+                self._keep_comments(comments_in((item,)))
                 self._node(without_comments(item))
             elif isinstance(item, ArcItem):
                 self.arcs.append(item)

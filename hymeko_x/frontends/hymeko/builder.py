@@ -11,6 +11,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
 from hymeko_x.formats.hymeko.classes import classes_in_force
+from hymeko_x.formats.hymeko.files import full_uri
 from hymeko_x.formats.hymeko.nesting import OUTER
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.graph import Arc
@@ -182,7 +183,7 @@ class HymekoBuilder(Builder):
 
     def full_uri(self, uri: str) -> str:
         """The uri of a file: behind the mechanism's ``files`` prefix where it begins with ``~/``."""
-        return self.files + uri[2:] if self.files and uri.startswith("~/") else uri
+        return full_uri(uri, self.files)
 
     def arc(self, kind: str, item: ArcItem, scope: Scope, kinds: tuple[str, ...] | None = None) -> RobotArc:
         """An arc of an edge of this kind, with its weight. ``kinds``: what it may lead to, the likeliest first."""

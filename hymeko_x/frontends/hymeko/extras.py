@@ -4,13 +4,29 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x.formats.hymeko import FOREIGN
+from hymeko_x.frontends.hymeko.comments import standing_comment
 from hymeko_x.ir.mechanism import Extra
-from hymeko_x.language.markup import INDENT, ONE_LINE, PLACE, TEXT, Spacing, markup_of, separate, text_of_value, usual_spacing
-from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, is_field, is_list
+from hymeko_x.language.markup import (
+    INDENT,
+    NAMESPACES,
+    ONE_LINE,
+    PLACE,
+    TEXT,
+    Spacing,
+    is_step,
+    markup_of,
+    separate,
+    text_of_value,
+    usual_spacing,
+)
+from hymeko_x.language.syntax import Comment, Field, Item, Node, Ref, is_field, is_list
+from hymeko_x.xml.namespaces import KNOWN_PREFIXES, PREFIX, with_declared, with_texts
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from hymeko_x.frontends.hymeko.values import ValueReader
+    from hymeko_x.ir.mechanism import Mechanism
 
 
 class _Home(NamedTuple):
@@ -19,11 +35,6 @@ class _Home(NamedTuple):
     format: str
     path: str
     at_root: bool
-
-
-def is_foreign(item: Item) -> bool:
-    """Whether an item is the block of another format."""
-    return isinstance(item, Node) and item.name in FOREIGN and not item.edge and not isinstance(item.name, QuotedName)
 
 
 def read_foreign(node: Node, reader: ValueReader, *, at_root: bool = False, place: int = 0) -> list[Extra]:
@@ -35,14 +46,10 @@ def read_foreign(node: Node, reader: ValueReader, *, at_root: bool = False, plac
     stack = [(_Home(node.name, "", at_root), node, place)]
     while stack:
         home, block, first = stack.pop()
-        inner = [item for item in block.items if _is_step(item)]
+        inner = [item for item in block.items if is_step(item)]
         found.extend(_read_place(home, block, first, reader))
         stack.extend((home._replace(path=str(item.name)[:-1]), item, 0) for item in reversed(inner) if isinstance(item, Node))
     return found
-
-
-def _is_step(item: Item) -> bool:
-    return isinstance(item, Node) and isinstance(item.name, QuotedName) and item.name.endswith("/")
 
 
 def _read_place(home: _Home, block: Node, place: int, reader: ValueReader) -> list[Extra]:
@@ -50,12 +57,19 @@ def _read_place(home: _Home, block: Node, place: int, reader: ValueReader) -> li
     spacing = usual_spacing(home.format, at_root=home.at_root)
     found: list[Extra] = []
     for item in block.items:
-        if _is_step(item):
+        if is_step(item):
             continue
         if is_field(item, (PLACE,)):
             place = reader.whole(item.value, item)
         elif is_field(item, (INDENT,)):
             spacing = _read_indent(item, reader)
+        elif isinstance(item, Comment) and home.path:
+            continue  # it has no place of its own
+        elif isinstance(item, Comment):
+            found.append(standing_comment(item, place))
+            place += not found[-1].path
+        elif is_field(item, (NAMESPACES,)) and is_list(item.value) and block.parameters is None:
+            found.extend(_read_namespaces(home, item, reader))
         elif isinstance(item, Field) and block.parameters is None:
             found.append(Extra(home.format, f"{home.path}/@{item.name}" if home.path else f"@{item.name}", read_text(item, reader)))
         else:
@@ -63,6 +77,20 @@ def _read_place(home: _Home, block: Node, place: int, reader: ValueReader) -> li
                 found.append(Extra(home.format, home.path, _markup(element, spacing, reader), place))
                 place += 1
     return found
+
+
+def _read_namespaces(home: _Home, item: Field, reader: ValueReader) -> Iterator[Extra]:
+    """The declarations of prefixes that are known by name: ``xmlns [xacro controller]``."""
+    for name in item.value if is_list(item.value) else ():
+        prefix = text_of_value(name) or ""
+        if prefix not in KNOWN_PREFIXES:
+            raise reader.refuse(item, f"the namespace of '{prefix}' is not known", hint=f'`{PREFIX}{prefix}` "..." names it')
+        yield Extra(home.format, f"@{PREFIX}{prefix}", KNOWN_PREFIXES[prefix])
+
+
+def with_namespaces(mechanism: Mechanism) -> Mechanism:
+    """The mechanism in whose elements of a format each prefix is declared that they use and the whole declares."""
+    return with_texts(mechanism, with_declared)
 
 
 def _markup(item: Item, spacing: Spacing | None, reader: ValueReader) -> str:

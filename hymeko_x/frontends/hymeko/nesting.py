@@ -8,10 +8,10 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko.nesting import BLOCK_SETTINGS, OUTER, nest_edge, nest_key, prefix_of
 from hymeko_x.frontends.hymeko.block import is_written
-from hymeko_x.frontends.hymeko.extras import is_foreign
 from hymeko_x.frontends.hymeko.kinds import typed_kind
 from hymeko_x.language.expansion import Element, Expanded, Scope, Statement
 from hymeko_x.language.machine import MAX_DEPTH
+from hymeko_x.language.markup import is_foreign
 from hymeko_x.language.syntax import Field, Node, QuotedName
 
 if TYPE_CHECKING:

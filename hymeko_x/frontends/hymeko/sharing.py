@@ -10,9 +10,9 @@ from hymeko_x.formats.hymeko import ROLE_MOVES
 from hymeko_x.formats.hymeko.sharing import RATIO, follower_dof, follower_name
 from hymeko_x.frontends.hymeko.block import is_written
 from hymeko_x.frontends.hymeko.builder import sign_of
-from hymeko_x.frontends.hymeko.extras import is_foreign
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import coupling_edge
+from hymeko_x.language.markup import is_foreign
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, Ref, is_field
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from msgspec import Struct, field
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
-from hymeko_x.formats.hymeko.units import BASE_UNITS, fits, fitting_units, unit_dimension, unit_factor
+from hymeko_x.formats.hymeko.units import BASE_UNITS, MOST_DIGITS, fits, fitting_units, rounded, unit_dimension, unit_factor
 from hymeko_x.ir.values import Pose, Vec3, Written, numbers_text, pose, pose_from_rpy
 from hymeko_x.ir.written import NOTATIONS, number_count, pose_as_written
-from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, Query, Ref, Value, is_list, origin_of
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, Query, Ref, Value, is_field, is_list, origin_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,11 +27,12 @@ DEFAULT_UNITS: Mapping[str, float] = MappingProxyType({"length": 1.0, "angle": u
 
 
 class ValueReader(Struct):
-    """Reads the values of one file. ``units`` are the factors of plain numbers by dimension."""
+    """Reads the values of one file. ``units`` are the factors of plain numbers by dimension, and ``digits`` those of plain angles."""
 
     file: str
     report: Report
     units: Mapping[str, float] = field(default_factory=lambda: DEFAULT_UNITS)
+    digits: int = 0
 
     def origin(self, item: Item) -> Origin:
         """The place of an item."""
@@ -46,7 +47,8 @@ class ValueReader(Struct):
     def number(self, value: Value | None, dimension: str, item: Item) -> float:
         """A number in SI: plain, by the units in force, or with a unit of its own."""
         if type(value) is float:
-            return value * self.units.get(dimension, 1.0)
+            plain = value * self.units.get(dimension, 1.0)
+            return rounded(plain, self.digits) if dimension == "angle" else plain
         if isinstance(value, Quantity):
             factor = unit_factor(value.unit)
             if factor is None:
@@ -74,7 +76,8 @@ class ValueReader(Struct):
                 hint = f"numbers stand in brackets: {item.name} [1 2 3]; a name stands behind '=': {item.name}=name"
             raise self.refuse(item, f"{name_of(item)} takes a list of numbers, not {describe(value)}", hint=hint)
         factor = self.units.get(dimension, 1.0)
-        values = tuple([part * factor if type(part) is float else self.number(part, dimension, item) for part in value])
+        is_rounded = self.digits and dimension == "angle"
+        values = tuple([part * factor if type(part) is float and not is_rounded else self.number(part, dimension, item) for part in value])
         if count is not None and len(values) != count:
             raise self.refuse(item, f"{name_of(item)} takes {count} numbers, not {len(values)}")
         return values
@@ -227,7 +230,7 @@ def _unit_words(item: Field) -> tuple[str, ...]:
 
 def read_units(node: Node, reader: ValueReader) -> dict[str, float]:
     """The factors that a ``units { angle rad length mm }`` block sets."""
-    words = [word for item in node.items if isinstance(item, Field) for word in _unit_words(item)]
+    words = [word for item in node.items if isinstance(item, Field) and item.name != "digits" for word in _unit_words(item)]
     factors = dict(reader.units)
     for dimension, unit in zip(words[::2], words[1::2], strict=False):
         known = BASE_UNITS.get(dimension)
@@ -239,3 +242,14 @@ def read_units(node: Node, reader: ValueReader) -> dict[str, float]:
     if len(words) % 2:
         raise reader.refuse(node, f"'{words[-1]}' stands without its unit")
     return factors
+
+
+def read_digits(node: Node, reader: ValueReader) -> int:
+    """How many digits of a radian plain angles have by ``units { digits 12 }``; 0 is as many as a double has."""
+    item = next((item for item in node.items if is_field(item, ("digits",))), None)
+    if not isinstance(item, Field):
+        return reader.digits
+    digits = reader.whole(item.value, item)
+    if not 0 < digits <= MOST_DIGITS:
+        raise reader.refuse(item, f"angles have 1 to {MOST_DIGITS} digits, not {digits}")
+    return digits
