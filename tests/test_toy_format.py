@@ -71,6 +71,12 @@ def test_its_losses_are_measured_and_kept_and_restored(capsys: pytest.CaptureFix
     assert [(loss["element"], loss["field"], loss["fate"]) for loss in losses] == [("joint 'upper'", "dofs[0]", "kept")]
     assert Path("out.toy").read_text().startswith("arm\nbase upper\nupper fore\n#kept : residue {\n")
     assert hx.load("out.toy").mechanism == hx.load("arm.urdf").mechanism
+    arm = Path("arm.urdf").read_text()
+    Path("more.urdf").write_text(arm.replace("<link", "<plugin/><link", 1))
+    assert {(loss.element, loss.field) for loss in hx.convert("more.urdf", "more.toy").losses or ()} == {
+        ("joint 'upper'", "dofs[0]"),
+        ("mechanism", "urdf content"),
+    }
     hx.convert("arm.urdf", "clean.toy")
     assert Path("clean.toy").read_text() == ARM
 
@@ -94,5 +100,7 @@ def test_its_length_is_counted() -> None:
 def test_the_command_line_lists_it(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["formats"]) == exits.DONE
     assert capsys.readouterr().out.partition("\n\n")[0].splitlines()[-1].split() == ["toy", "yes", "yes", "no", ".toy", "Toy", "pairs"]
+    assert main(["formats", "--json"]) == exits.DONE
+    assert json.loads(capsys.readouterr().out)[-1]["name"] == "toy"
     assert main(["convert", "arm.toy", "arm.step"]) == exits.FAILED
     assert ".toy" in capsys.readouterr().err

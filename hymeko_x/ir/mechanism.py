@@ -260,6 +260,12 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
         text = self.notations.get(key, _NO_NOTATIONS).get(notation.name)
         return None if text is None else notation.read(text)
 
+    def with_note(self, keys: Iterable[Id], notation: Notation[T], value: T) -> Mechanism:
+        """The mechanism with this notation on these elements; itself for none."""
+        text = notation.write(value)
+        new = {key: {**self.notations.get(key, _NO_NOTATIONS), notation.name: text} for key in keys}
+        return replace(self, notations={**self.notations, **new}) if new else self
+
     def replace(
         self,
         *,

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from msgspec.structs import replace
-
 from hymeko_x import codes
 from hymeko_x.diagnostics import counted
 from hymeko_x.ir.graph import Arc, Edge
@@ -70,10 +68,7 @@ def _with_bases(mechanism: Mechanism, *, is_free: bool, report: Report) -> Mecha
     edges = {names.take("joint", f"{root.name}_{suffix}"): joint_edge(joint, WORLD, root) for root in open_bases}
     mechanism = with_world(mechanism)
     mechanism = mechanism.replace(edges=edges)
-    if is_free:
-        return mechanism
-    unnamed = {key: {UNNAMED.name: UNNAMED.write(True)} for key in edges}
-    return replace(mechanism, notations={**mechanism.notations, **unnamed})
+    return mechanism if is_free else mechanism.with_note(edges, UNNAMED, True)
 
 
 def _report_fixed_bases(mechanism: Mechanism, worlds: set[Id], report: Report) -> None:

@@ -58,8 +58,8 @@ def make_collisions_convex(mechanism: Mechanism, kind: Kind, context: Context) -
         context.report.note(codes.FOR_TARGET, f"{context.reason}: no concave mesh collides; nothing is changed", element="mechanism")
         return mechanism
     _report({key: new for key, new in found.items() if new is not None}, kind, context)
-    notations = {**mechanism.notations, **{key: {UNNAMED.name: UNNAMED.write(True)} for key in edges if key not in mechanism.graph.edges}}
-    return replace(mechanism.replace(vertices=meshes, edges=edges, without=gone), notations=notations)
+    added = [key for key in edges if key not in mechanism.graph.edges]
+    return mechanism.replace(vertices=meshes, edges=edges, without=gone).with_note(added, UNNAMED, True)
 
 
 def _colliding(mechanism: Mechanism) -> list[ShapeView]:

@@ -17,7 +17,7 @@ from hymeko_x.ir.solids import with_tensor_of
 from hymeko_x.ir.values import numbers_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism
@@ -280,20 +280,18 @@ def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
     if native_format(mechanism):
         return mechanism
     changed: dict[Id, Body] = {}
-    unsaid: dict[Id, Mapping[str, str]] = {}
+    without: list[Id] = []
     for key, body in mechanism.vertices(Body):
         inertial = body.inertial
         if inertial is None or not inertial.mass or inertial.tensor is not None or mechanism.notation(key, WITHOUT_TENSOR):
             continue
         given = with_tensor_of(mechanism.shapes.get(key, ()), inertial)
         if given is None:
-            unsaid[key] = {**mechanism.notations.get(key, {}), WITHOUT_TENSOR.name: WITHOUT_TENSOR.write(True)}
+            without.append(key)
             continue
         changed[key] = replace(body, inertial=given)
         message = f"{key} has a mass and no inertia tensor; that of its geometry is written"
         if given.com != inertial.com:
             message = f"{key} has a mass, and neither a centre of mass nor an inertia tensor; those of its geometry are written"
         context.report.note(codes.REWRITTEN, message, mechanism.origin(key), element=str(key))
-    if unsaid:
-        mechanism = replace(mechanism, notations={**mechanism.notations, **unsaid})
-    return mechanism.replace(vertices=changed)
+    return mechanism.with_note(without, WITHOUT_TENSOR, True).replace(vertices=changed)

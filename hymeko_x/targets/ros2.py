@@ -42,9 +42,8 @@ def let_base_float_in_srdf(mechanism: Mechanism, context: Context) -> Mechanism:
     where = "" if held.parent_pose == held.child_pose else "; it begins at the origin of the world"
     message = f"{held.id} is a virtual joint of the SRDF, and {held.child} the open base{where} ({context.reason})"
     context.report.note(codes.FOR_TARGET, message, mechanism.origin(held.id), element=str(held.id))
-    notations = {**mechanism.notations, held.id: {**mechanism.notations.get(held.id, {}), VIRTUAL.name: VIRTUAL.write(True)}}
     edges = {held.id: joint_edge(held.joint, WORLD, held.child)}
-    return replace(mechanism.replace(edges=edges), notations=notations)
+    return mechanism.replace(edges=edges).with_note([held.id], VIRTUAL, True)
 
 
 # ---- SRDF ----------------------------------------------------------------------------------------------------------------------
@@ -75,11 +74,11 @@ def exclude_neighbours(mechanism: Mechanism, context: Context) -> Mechanism:
     data = Contact("exclude", ((srdf.REASON, srdf.ADJACENT),))
     edges: dict[Id, RobotEdge] = {names.take("contact", f"{a.name}_{b.name}"): Edge(data, (Arc(a, 0), Arc(b, 0))) for a, b in pairs}
     context.report.note(codes.FOR_TARGET, f"{counted(len(pairs), 'pair')} of adjacent links excluded from collision ({context.reason})")
-    notations = {**mechanism.notations, **{key: {UNNAMED.name: UNNAMED.write(True)} for key in edges}}
+    notations = {**mechanism.notations}
     for body in {body for pair in pairs for body in pair} & notations.keys():  # what is referred to has its name written
         notations[body] = {name: text for name, text in notations[body].items() if name != UNNAMED.name}
     mechanism = replace(mechanism, notations=notations)
-    return mechanism.replace(edges=edges)
+    return mechanism.replace(edges=edges).with_note(edges, UNNAMED, True)
 
 
 def _neighbours(mechanism: Mechanism) -> Iterator[tuple[Id, Id]]:

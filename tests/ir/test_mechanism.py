@@ -179,3 +179,9 @@ def test_another_graph_changes_nothing_else() -> None:
     full = replace(Mechanism("r"), **named)  # type: ignore[arg-type]
     changed = full.replace(vertices={Id("body", "b"): parts.Body()})
     assert {name: getattr(changed, name) for name in named} == named
+
+
+def test_a_note_stands_beside_others_of_its_element() -> None:
+    robot = replace(tree(("j", A, B)), notations={A: {"frame": "2"}})
+    assert robot.with_note([A, B], word("type"), "plane").notations == {A: {"frame": "2", "type": "plane"}, B: {"type": "plane"}}
+    assert robot.with_note([], word("type"), "plane") is robot

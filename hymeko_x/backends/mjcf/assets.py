@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf.mesh_order import mesh_order
+from hymeko_x.formats.mjcf.notations import LAYERS
 from hymeko_x.formats.mjcf.places import MATERIAL, MESH
 from hymeko_x.formats.mjcf.words import below
 from hymeko_x.ir.graph import Arc
@@ -77,8 +78,7 @@ def _mesh(sheet: MjcfSheet, key: Id, mesh: Mesh) -> Tag:
 def _material(sheet: MjcfSheet, key: Id, material: Material, layers: list[tuple[str, str]]) -> Tag:
     """A material; its colour texture is an attribute, several textures are <layer> elements."""
     own_class = sheet.own_class(key)
-    notations = sheet.notations(key)
-    simple = layers[0][1] if len(layers) == 1 and layers[0][0] == "rgb" and not notations.get("layers") else None
+    simple = layers[0][1] if len(layers) == 1 and layers[0][0] == "rgb" and not sheet.note(key, LAYERS) else None
     values = {
         "rgba": material.rgba or (),
         "specular": material.specular,
@@ -90,7 +90,7 @@ def _material(sheet: MjcfSheet, key: Id, material: Material, layers: list[tuple[
         "texture": simple,
     }
     groups = MATERIAL if sheet.from_mjcf else _PLAIN_MATERIAL
-    found = sheet.attributes(values, groups, sheet.base("material", own_class), notations, {})
+    found = sheet.attributes(values, groups, sheet.base("material", own_class), sheet.notations(key), {})
     inside = [] if simple is not None else [Tag("layer", {"role": use, "texture": texture}) for use, texture in layers]
     return tag_of(
         "material", {"name": sheet.name(key), "class": own_class, **found, **sheet.kept_attributes(key)}, [*inside, *sheet.inside(key)]

@@ -11,6 +11,7 @@ from hymeko_x.backends.mjcf.joints import write_dof
 from hymeko_x.backends.mjcf.mounts import write_mount
 from hymeko_x.backends.mjcf.sheet import open_body, tag_of
 from hymeko_x.formats.mjcf.codec import POSE
+from hymeko_x.formats.mjcf.notations import CHILDCLASS, frame_of
 from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body
@@ -60,7 +61,7 @@ def _add_inertial(sheet: MjcfSheet, body: BodyTag, inertial: Inertial) -> None:
     if not sheet.from_mjcf:
         inertial = replace(inertial, tensor=inertial.tensor or _NO_TENSOR, written=None)
     notations = sheet.notations(body.key)
-    frame = body.frame(notations.get("inertial/frame"))
+    frame = body.frame(sheet.note(body.key, frame_of("inertial/")))
     groups = _INERTIAL if frame is None else (seen_from(INERTIAL, frame.pose),)
     attributes = sheet.attributes({"inertial": inertial}, groups, {}, notations, {}, "inertial/")
     body.add(Tag("inertial", {**attributes, **sheet.kept_attributes(body.key, "inertial")}), frame)
@@ -70,9 +71,9 @@ def _add_body(sheet: MjcfSheet, outer: BodyTag, key: Id, view: JointView | None)
     """A body without its content: its pose at the reference configuration is P C^-1 in its parent."""
     pose = IDENTITY if view is None else compose(view.parent_pose, inverse(view.child_pose))
     notations, kept = sheet.notations(key), sheet.kept_attributes(key)
-    frame = outer.frame(notations.get("frame"))
+    frame = outer.frame(sheet.note(key, frame_of()))
     groups = _POSE if frame is None else (seen_from(POSE, frame.pose),)
-    childclass = notations.get("childclass")
+    childclass = sheet.note(key, CHILDCLASS)
     attributes = {
         "name": sheet.name(key),
         "childclass": childclass,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf.codec import numbers_of
+from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.words import shifted, trimmed
 from hymeko_x.ir.mechanism import WORLD, numbers_weight, pose_weight
 from hymeko_x.ir.parts import Coupling, Loop
@@ -102,5 +103,5 @@ def _closure(sheet: MjcfSheet, key: Id, loop: Loop, first: RobotArc, second: Rob
     if loop.kind == "connect":
         return {"anchor": text}
     turn = unit_quat(quat_product(one.quat, quat_inverse(two.quat)))
-    relative = notations.get("@relpose") if sheet.from_mjcf else sheet.numbers((*one.xyz, *turn))
+    relative = sheet.note(key, attribute("relpose")) if sheet.from_mjcf else sheet.numbers((*one.xyz, *turn))
     return {"anchor": text if any(anchor) or "@anchor" in notations else None, "relpose": relative}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf import CLASSES
 from hymeko_x.formats.mjcf.notations import GRID as NOTED_GRID
+from hymeko_x.formats.mjcf.notations import attribute, frame_of
 from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, between_its_ends, seen_from
 from hymeko_x.formats.mjcf.roles import role_attributes
 from hymeko_x.ir.graph import Arc
@@ -27,7 +28,7 @@ def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     if isinstance(shape.geometry, NoShape) and not sheet.from_mjcf:
         raise ValueError("a shape without geometry is not legal MJCF")
     notations, kept = sheet.notations(key), sheet.kept_attributes(key)
-    frame = body.frame(notations.get("frame"))
+    frame = body.frame(sheet.note(key, frame_of()))
     own_class = sheet.own_class(key) if sheet.from_mjcf else CLASSES.get(shape.role)
     base = sheet.base("geom", own_class, body.childclass if frame is None else frame.childclass)
     fitted = "mesh" in kept or ("mesh" in base and view.mesh is None)
@@ -48,8 +49,8 @@ def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     }
     context = kept if fitted or mesh is None else {**kept, "mesh": mesh}
     found = sheet.attributes(values, groups, base, notations, context)
-    if isinstance(shape.geometry, NoShape) and "@type" in notations:
-        found["type"] = notations["@type"]  # a kind of geom that the IR does not have
+    if isinstance(shape.geometry, NoShape) and (kind := sheet.note(key, attribute("type"))) is not None:
+        found["type"] = kind  # of a geom that the IR does not have
     own = {**found, **kept}
     own |= role_attributes(shape.role, {**base, **own}) if sheet.from_mjcf else {}
     body.add(tag_of("geom", {"name": shape.name or None, "class": own_class, **own}, sheet.inside(key), view.body), frame)

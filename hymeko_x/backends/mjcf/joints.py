@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf.joints import ANCHOR, AXIS, JOINT
+from hymeko_x.formats.mjcf.notations import frame_of, is_joint
 from hymeko_x.ir.parts import DofKind
 from hymeko_x.ir.values import IDENTITY, ZERO, Written, Z, apply, inverse, rotate, unit
 
@@ -29,10 +30,10 @@ def write_dof(sheet: MjcfSheet, body: BodyTag, view: JointView, number: int) -> 
     prefix = str(number + 1) if len(view.joint.dofs) > 1 else ""
     path = f"joint[{prefix}]" if prefix else ""
     notations, kept = sheet.notations(key), sheet.kept_attributes(key, path)
-    frame = body.frame(notations.get(f"{prefix}frame"))
+    frame = body.frame(sheet.note(key, frame_of(prefix)))
     name = dof.name if prefix else dof.name or sheet.name(key)
     inside = sheet.inside(key, path)
-    if dof.kind is DofKind.FREE and notations.get(f"{prefix}tag") != "joint" and _is_bare(dof):
+    if dof.kind is DofKind.FREE and sheet.note(key, is_joint(prefix)) != "joint" and _is_bare(dof):
         body.add(tag_of("freejoint", {"name": name, **kept}, inside), frame)
         return
     own_class = sheet.own_class(key, number)

@@ -7,7 +7,7 @@ one is the simple case: angles in radians, every element named, and the classes 
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 from xml.parsers.expat import ExpatError
 
 import msgspec
@@ -34,7 +34,10 @@ if TYPE_CHECKING:
     from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotArc
+    from hymeko_x.ir.notations import Notation
     from hymeko_x.ir.parts import Dof, Parameters
+
+T = TypeVar("T")
 
 Attributes = dict[str, str | None]
 """The attributes of an element in the order of printing; None is not printed."""
@@ -100,8 +103,12 @@ class MjcfSheet(Struct):
         name = found[number] if number < len(found) else ""
         return name if name and self.classes.has(name) else None
 
+    def note(self, key: Id, notation: Notation[T]) -> T | None:
+        """How the author wrote something of the element in MJCF, or None."""
+        return self.mechanism.notation(key, notation) if self.from_mjcf else None
+
     def notations(self, key: Id) -> Mapping[str, str]:
-        """How the author wrote the element in MJCF."""
+        """The attributes and the rest that the author wrote in MJCF in another way than the writer does, by the names of the notations."""
         return self.mechanism.notations.get(key, _EMPTY) if self.from_mjcf else _EMPTY
 
     def extras(self, key: Id) -> tuple[Extra, ...]:

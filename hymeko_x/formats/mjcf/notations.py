@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 from hymeko_x.formats.mjcf.tree import parse_text
@@ -9,13 +10,15 @@ from hymeko_x.ir.notations import Notation, flag, word
 from hymeko_x.ir.values import number_text
 
 
+@cache
 def attribute(name: str, prefix: str = "") -> Notation[str]:
     """An attribute, verbatim, where printing its value would not give it again; ``prefix`` is that of a dof or of ``inertial/``."""
     return word(f"{prefix}@{name}")
 
 
+@cache
 def frame_of(prefix: str = "") -> Notation[str]:
-    """The number of the <frame> that an element is in."""
+    """The number of the <frame> that an element is in; ``prefix`` as of :func:`attribute`."""
     return word(f"{prefix}frame")
 
 
@@ -40,6 +43,7 @@ def frame(number: int) -> Notation[Frame]:
     return Notation(f"frame{number}", _frame_text, _frame)
 
 
+@cache
 def is_joint(prefix: str) -> Notation[str]:
     """The tag of a free dof that is a <joint> instead of a <freejoint>."""
     return word(f"{prefix}tag")
