@@ -7,10 +7,12 @@ import inspect
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 import hymeko_x as hx
-from hymeko_x import api, codes
+from hymeko_x import api, codes, formats
 from hymeko_x.cli.convert import convert_arguments
+from hymeko_x.diagnostics import Origin
 
 NAMED = {"package": "packages", "arg": "arguments", "env": "environment", "variant": "variants", "paths": "source"}
 OF_THE_SHELL = {"help", "jobs", "json", "report", "fail_on", "verify", "samples", "seed", "meshes", "quiet", "verbose"}
@@ -73,3 +75,26 @@ def test_an_option_that_does_not_exist_is_a_type_error(tmp_path: Path) -> None:
         hx.load(tmp_path / "arm.urdf", colour="red")  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="colour"):
         hx.dumps(hx.load(tmp_path / "arm.urdf"), "urdf", colour="red")  # type: ignore[call-arg]
+
+
+def test_files_are_found_beside_the_source_and_not_where_some_element_came_from(tmp_path: Path) -> None:
+    (tmp_path / "in").mkdir()
+    (tmp_path / "out").mkdir()
+    (tmp_path / "in/a.stl").write_bytes(b"solid")
+    (tmp_path / "in/arm.urdf").write_text(ARM.replace("package://arm/", ""))
+    robot = hx.load(tmp_path / "in/arm.urdf").mechanism
+    for origins in ({}, dict.fromkeys(robot.origins, Origin(str(tmp_path / "elsewhere/b.urdf")))):
+        hx.dump(replace(robot, origins=origins), tmp_path / "out/arm.hymeko", assets="copy")
+        assert (tmp_path / "out/meshes/a.stl").read_bytes() == b"solid"
+        (tmp_path / "out/meshes/a.stl").unlink()
+
+
+SWAPPED = (("<sdf/>", "urdf", "sdf"), ("<sdf/>", "mjcf", "sdf"), ("<robot/>", "sdf", "urdf"), ("<mujoco/>", "urdf", "mjcf"))
+
+
+@pytest.mark.parametrize(("text", "format", "right"), SWAPPED)
+def test_the_format_that_a_root_belongs_to_is_named_with_a_reader_that_there_is(text: str, format: str, right: str) -> None:
+    with pytest.raises(hx.Refusal) as refusal:
+        hx.loads(text, format)
+    assert refusal.value.diagnostic.hint.endswith(f"read it with --from {right}")
+    assert formats.by_name(right).frontend is not None

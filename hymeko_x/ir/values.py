@@ -361,7 +361,7 @@ def numbers_text(values: tuple[float, ...]) -> str:
         text = encode(values)
     except TypeError:  # a number that is no plain one of Python
         return " ".join(map(number_text, values))
-    if b"0.0000" in text or text.count(b".") != len(values):
+    if b"0.0000" in text or (text.count(b".") != len(values) and (b"null" in text or not are_numbers(values))):
         return " ".join(map(number_text, values))
     return text[1:-1].decode().replace(".0,", " ").replace(",", " ").removesuffix(".0")
 
