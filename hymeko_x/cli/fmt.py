@@ -80,5 +80,5 @@ def _format(name: str, *, check: bool, diff: bool) -> bool:
 
 def _summary(changed: int, same: int, failed: int, *, would: bool) -> str:
     parts = [(changed, "would be reformatted" if would else "reformatted"), (same, "left unchanged"), (failed, "could not be read")]
-    said = [f"{count} {'file' if count == 1 else 'files'} {words}" for count, words in parts if count]
-    return ", ".join(said)
+    counts = [f"{count} {'file' if count == 1 else 'files'} {words}" for count, words in parts if count]
+    return ", ".join(counts)

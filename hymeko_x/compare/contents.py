@@ -74,7 +74,7 @@ def _pieces(a: Mechanism, b: Mechanism) -> dict[Id, tuple[Id, ...]]:
 
 
 def _of_asset(key: Id, a: Contents, b: Contents, pieces: Mapping[Id, tuple[Id, ...]]) -> Iterator[Difference | None]:
-    """The differences of one asset; None where a content is not known, so that nothing can be said."""
+    """The differences of one asset; None where a content is not known, so that nothing is known."""
     part, other = a.mechanism.graph.vertices[key], b.mechanism.graph.vertices[key]
     before, after = _data(part, a), _data(other, b)
     if before is not None and before == after and (isinstance(part, Texture) or suffix_of(part.uri or "") == suffix_of(other.uri or "")):  # type: ignore[union-attr]

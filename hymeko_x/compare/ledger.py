@@ -91,7 +91,7 @@ def losses_between(
     renamed = tuple(renamed)
     names = {difference.element: str(difference.after)[1:-1] for difference in renamed if difference.field == "name"}
     renamed = (difference for difference in renamed if not _is_number(difference, mechanism))
-    found = (*renamed, *kept, *_unsaid_notes(mechanism, aligned))
+    found = (*renamed, *kept, *_notes_that_count(mechanism, aligned))
     lost = [difference for difference in found if not _is_boilerplate(difference, mechanism, format)]
     return tuple([_loss(difference, mechanism, aligned, names, is_kept=is_carried) for difference in lost])
 
@@ -106,7 +106,7 @@ def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
     return key.kind == "shape" or bool(of_file) or mechanism.notation(key, UNNAMED) is not None
 
 
-def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference]:
+def _notes_that_count(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference]:
     """What only a notation holds, and yet is more than how something was written: where a stage shows its bodies at first."""
     stated = [(field, name) for format in formats.families() for field, name in format.stated_notations.items()]
     for key, table in mechanism.notations.items() if stated else ():

@@ -88,7 +88,7 @@ def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow])
         table(["from", "into", "kind", "robots"], _top(statistics.kinds(tables, "lost"), 5)),
         "## In what results differ",
         table(["from", "into", "quantity", "robots"], _top(statistics.kinds(tables, "failed"), 5)),
-        *_unsaid(tables),
+        *_unrepresented(tables),
         "## Every accepted file that is not the same",
         table(["file", "from", "into", "cause"], statistics.failures(tables).rows()),
         "## Figures",
@@ -97,7 +97,7 @@ def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow])
     return "\n\n".join(parts) + "\n"
 
 
-def _unsaid(tables: Tables) -> list[str]:
+def _unrepresented(tables: Tables) -> list[str]:
     """What engines see in one file and cannot be said in the other, where the run asked for it."""
     if "unsaid" not in tables.legs.columns:
         return []

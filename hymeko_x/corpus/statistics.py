@@ -179,7 +179,7 @@ def _is_same() -> pl.Expr:
     return pl.col("verdict").str.starts_with("same")
 
 
-def _unsaid_losses(legs: pl.DataFrame) -> pl.Expr:
+def _losses_of_formats(legs: pl.DataFrame) -> pl.Expr:
     """How much the target's own words do not say: the losses of physics and settings, where the run distinguishes these from all losses."""
     import polars as pl
 
@@ -198,7 +198,7 @@ def pair_rows(tables: Tables) -> tuple[PairRow, ...]:
         done = accepted.filter(pl.col("status") == "done")
         alike = done.filter(_is_same())
         same, different, unknown = len(alike), *(len(done.filter(pl.col("verdict") == word)) for word in ("different", "not comparable"))
-        exact, complete = len(alike.filter(_unsaid_losses(legs) == 0)), len(alike.filter(pl.col("losses") == pl.col("carried")))
+        exact, complete = len(alike.filter(_losses_of_formats(legs) == 0)), len(alike.filter(pl.col("losses") == pl.col("carried")))
         median = float(np.median(done["losses"].drop_nulls().to_numpy())) if done["losses"].drop_nulls().len() else 0.0
         counts = (len(all_legs), len(accepted), len(done), same, different, unknown, exact, complete)
         rows.append(PairRow(str(source), str(target), *counts, median))

@@ -30,7 +30,7 @@ def implied_actuators(mechanism: Mechanism, names: Mapping[str, list[str]]) -> d
 
 
 def fits_in(home: str, actuator: Id, names: Mapping[str, list[str]]) -> bool:
-    """Whether the name of an actuator can be said in an assembly, where it has its end alone."""
+    """Whether the name of an actuator can be written in an assembly, where it has its end alone."""
     if not home:
         return True
     short = actuator.name.removeprefix(f"{home}_")

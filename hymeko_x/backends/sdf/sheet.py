@@ -94,10 +94,10 @@ class SdfSheet:
             return own  # a model without links
         outer = words.scope_around(scope)
         is_outer = bool(scope) and (bool(outer) or not self.has_several_models) and self.is_static(outer)
-        return self.is_static(scope) and (own or not (self._said_static or is_outer))
+        return self.is_static(scope) and (own or not (self._is_static_given or is_outer))
 
     @cached_property
-    def _said_static(self) -> bool:
+    def _is_static_given(self) -> bool:
         return any("static" in self.written(key) for key in (ROOT, *self.places.mounts))
 
     def is_implied(self, view: JointView) -> bool:

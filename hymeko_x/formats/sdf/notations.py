@@ -82,8 +82,8 @@ def _pose_text(pose: WrittenPose) -> str:
 
 
 def _pose(text: str) -> WrittenPose:
-    *said, numbers = text.split("; ")
-    known = dict(item.partition("=")[::2] for item in said)
+    *items, numbers = text.split("; ")
+    known = dict(item.partition("=")[::2] for item in items)
     return WrittenPose(known.get("relative_to"), known.get("rotation_format"), known.get("degrees"), numbers)
 
 

@@ -95,10 +95,10 @@ def _converted(root: Any, name: str) -> Document:
     try:
         return convert(root, Document)
     except ValidationError as error:
-        said = _PLACE.fullmatch(str(error))
-        assert said is not None
-        path = said["path"] or "$"
-        what = f"{said['what'][0].lower()}{said['what'][1:]}"
+        found = _PLACE.fullmatch(str(error))
+        assert found is not None
+        path = found["path"] or "$"
+        what = f"{found['what'][0].lower()}{found['what'][1:]}"
         raise refuse(codes.BAD_DOCUMENT, f"{path}: {what}", Origin(name), element=_label(root, path), hint=hint) from error
 
 
@@ -123,7 +123,7 @@ def _mechanism(found: Document, name: str) -> Mechanism:
         graph=Hypergraph(vertices, edges),
         extras={key: item.extras for key, item in about.items() if item.extras},
         origins={key: Origin(name) for key in about if key != ROOT},
-        notations={key: said for key, said in notations.items() if said},
+        notations={key: own for key, own in notations.items() if own},
         stereotypes={key: item.classes for key, item in about.items() if item.classes},
         layout=found.layout,
         source=source,

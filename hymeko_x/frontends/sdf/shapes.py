@@ -35,9 +35,9 @@ def read_shape(node: Node, number: int, role: Role, body: Id, model: Model, buil
     mu = builder.value(node, _FRICTION, key) if role is Role.COLLISION else None
     weight = None
     if density is not None and role is Role.COLLISION:
-        said = node.has("density")
+        is_given = node.has("density")
         weight = builder.value(node, Field("density", "density", NUMBER, density), key)
-        if said and weight is not None:
+        if is_given and weight is not None:
             builder.written.setdefault(key, {}).setdefault("density", NUMBER.write(weight))
     shape = Shape(geometry, role, None if name == words.shape_name(node.tag, number) else name, rgba, density=weight)
     if mu is not None:

@@ -88,9 +88,9 @@ def _read_pose(node: Node, builder: UrdfBuilder) -> bool:
 
 def _floats(node: Node, builder: UrdfBuilder) -> bool:
     """Whether it is a floating joint from the world to a link: then the robot floats. Others are only frames of a planner."""
-    said = node.attributes
-    is_known = said.get("child_link") in builder.links and said.get("name") not in builder.joints
-    return node.tag == "virtual_joint" and is_known and (said.get("type"), said.get("parent_frame")) == ("floating", WORLD.name)
+    given = node.attributes
+    is_known = given.get("child_link") in builder.links and given.get("name") not in builder.joints
+    return node.tag == "virtual_joint" and is_known and (given.get("type"), given.get("parent_frame")) == ("floating", WORLD.name)
 
 
 def _add_virtual_joint(node: Node, builder: UrdfBuilder) -> None:
