@@ -80,7 +80,7 @@ def test_a_joint_that_a_format_calls_apart_from_its_link_keeps_its_name_when_tha
 def test_the_name_of_a_joint_that_mjcf_has_no_element_for_is_noted_each_time(tmp_path: Path) -> None:
     tool = '<link name="tool"/><joint name="mount" type="fixed"><parent link="foot"/><child link="tool"/></joint></robot>'
     after, notes = brought_home(tmp_path, "r.urdf", ("</robot>", tool))
-    assert '        <body name="tool">\n' in after
+    assert '        <body name="tool"/>\n' in after
     assert notes == ["the edit did not arrive: joint 'tool' is called 'mount'"]
 
 

@@ -35,7 +35,6 @@ def test_what_legs_share_is_in_classes_called_after_their_parts() -> None:
         head
         == """\
   <default>
-    <geom density="0"/>
     <joint damping="0.125" actuatorfrcrange="-40 40"/>
     <default class="visual">
       <geom contype="0" conaffinity="0" group="2"/>

@@ -70,7 +70,6 @@ WHOLE = """<mujoco model="chain">
   <compiler angle="radian" autolimits="true"/>
 
   <default>
-    <geom density="0"/>
     <default class="visual">
       <geom contype="0" conaffinity="0" group="2"/>
     </default>

@@ -83,6 +83,5 @@ def _add_body(sheet: MjcfSheet, outer: BodyTag, key: Id, view: JointView | None)
     has_inertial = sheet.mechanism.vertex(key, Body).inertial is not None
     inside = [text for text in sheet.inside(key) if not (has_inertial and text.startswith("<inertial"))]  # which the engine ignored
     tag = tag_of("body", attributes, inside)
-    tag.has_end = True
     outer.add(tag, frame)
     return open_body(sheet, key, tag, childclass or (outer.childclass if frame is None else frame.childclass))

@@ -39,6 +39,8 @@ _OF_ROLES = [Tag("default", {"class": name}, [Tag("geom", dict(attributes))]) fo
 ROLE_CLASSES = Classes([parse_text(ready(Tag("default", {}, [Tag("geom", dict(_MASSLESS)), *_OF_ROLES]), 0))])
 """The classes of every robot from elsewhere. Geoms have no mass: bodies have their inertials."""
 
+_FEWEST_FILES = 3
+
 _LIKENESS = frozenset(("type", "size", "material", "rgba", "density", "friction"))
 _MOTION = frozenset(("type", "axis", "range", "ref", "springref", "stiffness", "damping", "frictionloss", "armature", "actuatorfrcrange"))
 _POWER = frozenset(("ctrllimited", "ctrlrange", "forcelimited", "forcerange", "gear", "kp", "kv", "dampratio"))
@@ -187,7 +189,7 @@ def write_defaults(sheet: MjcfSheet, place: int) -> None:
     """<default> at its place behind the settings, with the classes of the elements that are written there."""
     tags = [tag for tag in _walk(sheet.root) if tag.owner is not None]
     roles = {tag.attributes.get("class") for tag in tags if tag.name == "geom"}
-    shared = {(MAIN, "geom"): dict(_MASSLESS)} if roles else {}
+    shared = {(MAIN, "geom"): dict(_MASSLESS)} if any(map(_has_geoms_alone, _walk(sheet.root))) else {}
     shared |= {(role, "geom"): dict(attributes) for role, attributes in _ROLES.items() if role in roles}
     inside: dict[str, list[str]] = {MAIN: [role for role in _ROLES if role in roles]}
     for found in shared_attributes(tags).classes:
@@ -196,6 +198,25 @@ def write_defaults(sheet: MjcfSheet, place: int) -> None:
             inside[found.around].append(found.name)
     if shared:
         sheet.root.children[place:place] = ["", _class_tag(MAIN, {}, shared, inside)]
+
+
+def _has_geoms_alone(tag: Tag) -> bool:
+    """Whether it is a body whose mass MuJoCo would compute from its geoms."""
+    kinds = {child.name for child in tag.children if isinstance(child, Tag)} if tag.name == "body" else set()
+    return "geom" in kinds and "inertial" not in kinds
+
+
+def settle_folders(sheet: MjcfSheet) -> None:
+    """<compiler> names the folder of all meshes, and that of all textures, where there are three or more."""
+    compiler = next(child for child in sheet.root.children if isinstance(child, Tag) and child.name == "compiler")
+    for word, kind in (("meshdir", "mesh"), ("texturedir", "texture")):
+        tags = [tag for tag in _walk(sheet.root) if tag.name == kind and "file" in tag.attributes]
+        folders = {tag.attributes["file"].rpartition("/")[0] for tag in tags}
+        folder = next(iter(folders)) if len(folders) == 1 and len(tags) >= _FEWEST_FILES else ""
+        if folder:
+            compiler.attributes[word] = folder
+            for tag in tags:
+                tag.attributes["file"] = tag.attributes["file"].removeprefix(f"{folder}/")
 
 
 def settle_angles(sheet: MjcfSheet) -> None:
