@@ -173,7 +173,7 @@ def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep, *, mo
         return shelf.way_to(path, uri)
     place = place_of(uri)
     if (is_kept or (keep is Keep.PACKAGES_AND_PATHS and not is_named)) and _is_below(place) and shelf.copy_as(place, path):
-        return uri
+        return place if ".." in uri.split("/") and not is_named else uri  # the folder that it leaves again may not be there
     found = read_file(files, uri)
     return None if found is None else shelf.copy(folder, file_stem(uri), suffix_of(path), *found)
 

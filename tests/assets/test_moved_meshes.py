@@ -59,3 +59,16 @@ def test_a_converted_file_is_not_given_the_name_of_the_file_that_it_was_made_of(
     assert np.ptp(trimesh.load(mesh, force="mesh").vertices, axis=0).tolist() == [1.0, 1.0, 0.5]
     assert f'filename="{mesh.relative_to(back.parent)}"' in back.read_text()
     assert (hx.verify(tmp_path / "gone" / "robot.urdf", back)).is_same
+
+
+@pytest.mark.parametrize("target", ["urdf", "sdf", "hymeko", "xml"])
+def test_a_path_through_a_folder_that_holds_no_file_is_found_in_the_output(target: str, tmp_path: Path) -> None:
+    for folder in ("home/assets", "home/meshes", "away"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "home" / "meshes" / "tet.obj").write_text(TETRAHEDRON)
+    (tmp_path / "home" / "r.xml").write_text(PLACED.replace("tet.obj", "assets/../meshes/tet.obj").replace(' refpos="0.01 0.02 0.03"', ""))
+    hx.convert(tmp_path / "home" / "r.xml", tmp_path / "away" / f"r.{target}", assets="copy")
+    (tmp_path / "home").rename(tmp_path / "gone")
+    (mesh,) = [part.uri for _, part in hx.load(tmp_path / "away" / f"r.{target}").mechanism.assets()]
+    assert mesh is not None
+    assert (tmp_path / "away" / mesh).is_file()
