@@ -40,6 +40,22 @@ def copy_companions(uri: str, new: str, path: str, shelf: Shelf, files: Files) -
             shelf.copy_as(place, there)
 
 
+def folder_with_room(folder: str, uri: str, path: str, shelf: Shelf, files: Files) -> str:
+    """The folder of an output, or one below it, in which all that a mesh file refers to finds its place."""
+    companions = () if shelf.within else tuple(companions_of(uri, path, files))
+    found, number = folder, 1
+    while any(_is_occupied(beside(f"{found}/{posixpath.basename(path)}", name), there, shelf, files) for name, there in companions):
+        number += 1
+        found = f"{folder}/{number}"
+    return found
+
+
+def _is_occupied(place: str, source: str, shelf: Shelf, files: Files) -> bool:
+    """Whether another file, with other content, is copied to this place."""
+    other = shelf.copies.get(place, source)
+    return other != source and files.read(other) != files.read(source)
+
+
 def companions_of(uri: str, path: str, files: Files) -> Iterator[tuple[str, str]]:
     """The files that the mesh file of a reference, found at a path, refers to: by their paths from its folder, and where they are."""
     waiting = list(named_in(path, files))

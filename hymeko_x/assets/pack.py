@@ -18,7 +18,7 @@ from msgspec import field
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats
-from hymeko_x.assets.companions import copy_companions
+from hymeko_x.assets.companions import copy_companions, folder_with_room
 from hymeko_x.assets.resolve import is_of_nameless_package
 from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir.builder import Builder
@@ -175,7 +175,9 @@ def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep, *, mo
     if (is_kept or (keep is Keep.PACKAGES_AND_PATHS and not is_named)) and _is_below(place) and shelf.copy_as(place, path):
         return place if ".." in uri.split("/") and not is_named else uri  # the folder that it leaves again may not be there
     found = read_file(files, uri)
-    return None if found is None else shelf.copy(folder, file_stem(uri), suffix_of(path), *found)
+    if found is None:
+        return None
+    return shelf.copy(folder_with_room(folder, uri, path, shelf, files), file_stem(uri), suffix_of(path), *found)
 
 
 def _stays(uri: str, shelf: Shelf, files: Files) -> bool:

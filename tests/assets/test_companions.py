@@ -68,3 +68,22 @@ def test_what_lies_outside_of_the_output_is_not_written(tmp_path: Path) -> None:
     (tmp_path.parent / "secret.mtl").write_text("newmtl x\nKd 1 0 0\n")
     hx.convert(tmp_path / "home" / "r.urdf", tmp_path / "out" / "away" / "r.urdf")
     assert sorted(path.name for path in (tmp_path / "out").rglob("*") if path.is_file()) == ["part.obj", "r.urdf"]
+
+
+@pytest.mark.parametrize("target", ["r.urdf", "r.sdf", "r.hymeko"])
+def test_libraries_of_one_name_stay_with_their_meshes(target: str, tmp_path: Path) -> None:
+    home = tmp_path / "home"
+    for folder, grey in (("front", 77), ("back", 144)):
+        (home / folder).mkdir(parents=True)
+        (home / folder / "part.obj").write_text(OBJ)
+        (home / folder / "part.mtl").write_text(f"# {folder}\nnewmtl skin\nmap_Kd skin.png\n")
+        (home / folder / "skin.png").write_bytes(png(grey))
+    second = '<visual><geometry><mesh filename="back/part.obj"/></geometry></visual></link>'
+    (home / "r.urdf").write_text(URDF.format("front/part.obj").replace("</link>", second))
+    (home / "back" / "part.obj").write_text(OBJ + "# back\n")
+    (tmp_path / "away").mkdir()
+    hx.convert(home / "r.urdf", tmp_path / "away" / target, assets="copy")
+    home.rename(tmp_path / "gone")
+    meshes = sorted((tmp_path / "away").rglob("*.obj"))
+    images = [trimesh.load(mesh, force="mesh").visual.material.image for mesh in meshes]
+    assert sorted(image.convert("RGB").getpixel((0, 0))[0] for image in images) == [77, 144]
