@@ -23,6 +23,7 @@ from hymeko_x.formats.mjcf.classes import PARTIAL, Classes
 from hymeko_x.formats.mjcf.roles import ATTRIBUTES
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.ir.names import free_name
+from hymeko_x.ir.parts import Shape
 from hymeko_x.xml.printing import Tag, ready
 
 if TYPE_CHECKING:
@@ -189,7 +190,7 @@ def write_defaults(sheet: MjcfSheet, place: int) -> None:
     """<default> at its place behind the settings, with the classes of the elements that are written there."""
     tags = [tag for tag in _walk(sheet.root) if tag.owner is not None]
     roles = {tag.attributes.get("class") for tag in tags if tag.name == "geom"}
-    shared = {(MAIN, "geom"): dict(_MASSLESS)} if any(map(_has_geoms_alone, _walk(sheet.root))) else {}
+    shared = {(MAIN, "geom"): dict(_MASSLESS)} if _need_no_mass(sheet) else {}
     shared |= {(role, "geom"): dict(attributes) for role, attributes in _ROLES.items() if role in roles}
     inside: dict[str, list[str]] = {MAIN: [role for role in _ROLES if role in roles]}
     for found in shared_attributes(tags).classes:
@@ -198,6 +199,12 @@ def write_defaults(sheet: MjcfSheet, place: int) -> None:
             inside[found.around].append(found.name)
     if shared:
         sheet.root.children[place:place] = ["", _class_tag(MAIN, {}, shared, inside)]
+
+
+def _need_no_mass(sheet: MjcfSheet) -> bool:
+    """Whether geoms have to be massless: MuJoCo would compute a mass from them, or the robot gives their density as 0."""
+    is_given = any(shape.density == 0 for _, shape, _ in sheet.mechanism.edges(Shape))
+    return is_given or any(map(_has_geoms_alone, _walk(sheet.root)))
 
 
 def _has_geoms_alone(tag: Tag) -> bool:
