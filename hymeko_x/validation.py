@@ -178,14 +178,14 @@ def _check_dof(found: _Findings, key: Id, dof: parts.Dof) -> None:
     numbers |= {"damping": dof.damping, "friction": dof.friction, "armature": dof.armature}
     for word, value in numbers.items():
         if value is not None and value < 0.0:
-            found.error(codes.BAD_LIMITS, key, f"{key}: the {word} {value!r} is negative")
+            found.error(codes.BAD_LIMITS, key, f"{key}: the {word} {value:.6g} is negative")
 
 
 def _check_limits(found: _Findings, key: Id, dof: parts.Dof) -> None:
     lower, upper = dof.limits.lower, dof.limits.upper
     farthest = max(abs(lower or 0.0), abs(upper or 0.0))
     if lower is not None and upper is not None and lower > upper:
-        found.error(codes.BAD_LIMITS, key, f"{key}: the lower limit {lower!r} is above the upper one {upper!r}")
+        found.error(codes.BAD_LIMITS, key, f"{key}: the lower limit {lower:.6g} is above the upper one {upper:.6g}")
     elif lower is not None and lower == upper:
         hint = "a joint that never moves is fixed; one without limits has none"
         found.warn(codes.BAD_LIMITS, key, f"{key} cannot move: both limits are {lower!r}", hint)
@@ -230,7 +230,7 @@ def _check_inertial(found: _Findings, key: Id, inertial: parts.Inertial) -> None
         found.error(codes.BAD_MASS, key, f"{key} has mass {mass!r}", "a mass is a positive number of kg")
     fault = tensor_fault(inertial)
     if fault is not None:
-        hint = f"a solid of {mass:g} kg and 0.1 m has about {(mass or 0.0) * 0.01 / 6:.2g} kg m^2" if mass else ""
+        hint = f"a solid of {mass:g} kg and 0.1 m has about {(mass or 0.0) * 0.01 / 6:.2g} kg m^2" if mass and mass > 0.0 else ""
         is_finite = all(map(math.isfinite, inertial.tensor or ()))
         found.error(codes.BAD_TENSOR, key, fault.format(key), hint if is_finite else "")
 

@@ -60,7 +60,8 @@ def test_a_mistyped_verb_is_a_usage_error_with_the_nearest_one(capsys: pytest.Ca
         (["corpus", "run", "--evry", "3"], "corpus: there is no option '--evry'; did you mean '--every'?"),
         (["verify", "a", "b", "--match", "nam"], "verify: --match: there is no 'nam'; did you mean 'name'?"),
         (["dh"], "dh: arguments are required: FILE"),
-        (["diff", "a", "b", "c"], "diff: there are more files than it takes: c"),
+        (["fmt", "arm.urdf"], "fmt: it is for HyMeKo text, and arm.urdf is urdf; `hymeko-x import arm.urdf` prints it as HyMeKo"),
+        (["diff", "a", "b", "c"], "diff: there are more words than it takes: c"),
     ],
 )
 def test_a_mistake_in_the_options_costs_one_line(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:

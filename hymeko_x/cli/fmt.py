@@ -45,9 +45,12 @@ def run_fmt(chosen: argparse.Namespace) -> int:
 
 
 def _names(given: list[str]) -> Iterator[str]:
-    """The files, and those in folders, hidden ones aside. Raises: UsageError for a folder without any."""
+    """The files, and those in folders, hidden ones aside. Raises: UsageError for a folder without any, or a file of another format."""
     suffixes = formats.OWN.suffixes
     for name in given:
+        row = formats.of_file(name)
+        if row is not None and row is not formats.OWN:
+            raise UsageError(f"it is for HyMeKo text, and {name} is {row.name}; `hymeko-x import {name}` prints it as HyMeKo")
         if name == "-" or not Path(name).is_dir():
             yield name
             continue

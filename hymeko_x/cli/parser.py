@@ -38,7 +38,7 @@ class Parser(argparse.ArgumentParser):
     def _unknown(self, words: list[str]) -> str:
         option = next((word.partition("=")[0] for word in words if word.startswith("-")), None)
         if option is None:
-            return f"there are more files than it takes: {' '.join(words)}"
+            return f"there are more words than it takes: {' '.join(words)}"
         near = _nearest(option, self._options())
         return f"there is no option '{option}'" + (f"; did you mean '{near}'?" if near else "")
 

@@ -53,7 +53,8 @@ def run_view(chosen: argparse.Namespace) -> int:
             print(f"http://127.0.0.1:{inside}" if is_local else _guarded(chosen.host, chosen.port, inside), flush=True)
             session.watch()
     finally:
-        server.stop()
+        with redirect_stdout(StringIO()):
+            server.stop()
     return exits.DONE
 
 

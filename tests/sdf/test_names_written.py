@@ -83,7 +83,7 @@ FILES = {
         urdf(
             shapes(("visual", "eye")), '<gazebo reference="a"><sensor name="eye" type="imu"/><plugin name="eye" filename="f.so"/></gazebo>'
         ),
-        ["sensor eye", "visual eye_visual"],
+        ["visual eye_visual", "sensor eye"],
     ),
 }
 
