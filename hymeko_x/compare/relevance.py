@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import formats
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, numbers_weight, pose_weight
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import MESH_POINTS, Body, DofKind, Joint, Mesh, Mount, Sense, Shape, Stance
 from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
 from hymeko_x.rewrite.efforts import actuator_efforts
@@ -63,13 +64,18 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
 
 
 def _is_described_otherwise(difference: Difference, before: Mechanism, after: Mechanism) -> bool:
-    """A name where there was none; a world, which its shapes imply; the points of a mesh, which are those of its file."""
+    """A name where there was none, or which is that of the file; a world, which its shapes imply; the points of a mesh, which are those of its file."""
     key, field = difference.element, difference.field
     if key == WORLD:
         return not field
     if field == "name":
-        return difference.before == _NO_NAME
+        return difference.before == _NO_NAME or (key == ROOT and _are_called_by_their_files(before, after))
     return key.kind == "mesh" and field in MESH_POINTS and _came_as_file(before.graph.vertices.get(key), after.graph.vertices.get(key))
+
+
+def _are_called_by_their_files(before: Mechanism, after: Mechanism) -> bool:
+    """Whether both robots have no name in their texts."""
+    return all(robot.notation(ROOT, UNNAMED) is not None for robot in (before, after))
 
 
 def _came_as_file(before: object, after: object) -> bool:

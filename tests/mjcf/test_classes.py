@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import mujoco
@@ -89,6 +90,36 @@ def test_an_edit_in_a_class_comes_home_and_the_class_does_not(tmp_path: Path) ->
     hx.convert(tmp_path / "q.xml", tmp_path / "home.urdf")
     home = (tmp_path / "home.urdf").read_text()
     assert [home.count('upper="1.5"'), home.count('upper="1.0625"'), home.count("residue")] == [4, 0, 0]
+
+
+BOUNDED = """<mujoco><compiler autolimits="{0}"/><default>{1}</default>
+<worldbody><body><joint name="j" range="-1 1" limited="{2}"/><geom size=".1" mass="1"/></body></worldbody></mujoco>"""
+
+
+@pytest.mark.parametrize(
+    ("default", "limited", "span"),
+    [
+        ('<general ctrllimited="true"/>', "false", [0, 0]),
+        ('<general ctrlrange="-2 2" forcerange="-3 3"/>', "false", [0, 0]),
+        ('<general ctrlrange="-2 2" forcerange="-3 3"/>', "true", [-1, 1]),
+        ('<position inheritrange="1"/>', "false", [0, 0]),
+        ("", "true", [-1, 1]),
+    ],
+)
+@pytest.mark.parametrize("autolimits", ["true", "false"])
+@pytest.mark.unread("HX114")
+def test_actuators_that_are_asked_for_have_no_limits_of_the_author_s_classes(
+    default: str, limited: str, span: list[float], autolimits: str, tmp_path: Path
+) -> None:
+    (tmp_path / "a.xml").write_text(BOUNDED.format(autolimits, default, limited))
+    losses = hx.convert(tmp_path / "a.xml", tmp_path / "b.xml", actuators="position").losses or ()
+    assert [str(loss) for loss in losses] == []
+    hx.convert(tmp_path / "b.xml", tmp_path / "c.xml")
+    for name in ("b.xml", "c.xml"):
+        model = mujoco.MjModel.from_xml_path(str(tmp_path / name))
+        assert model.actuator_ctrlrange[0] * 180 / math.pi == pytest.approx(span)
+        assert bool(model.actuator_ctrllimited[0]) is any(span)
+        assert not model.actuator_forcelimited[0]
 
 
 def models(robot: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, **how: object) -> tuple[mujoco.MjModel, mujoco.MjModel]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf import TARGETS
+from hymeko_x.formats.mjcf.words import LIMITED, UNBOUNDED, is_range
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, Drive
 from hymeko_x.xml.tree import read_numbers
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.backends.mjcf.sheet import Attributes, MjcfSheet
     from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.ir.parts import Parameters
     from hymeko_x.xml.printing import Tag
 
 _ROLES = {"crank": "cranksite", "slider": "slidersite", "reference": "refsite"}
@@ -33,11 +35,19 @@ def write_actuators(sheet: MjcfSheet) -> None:
             "name": sheet.name(key),
             "class": own_class,
             **_targets(sheet, *drives[key], base),
-            **sheet.parameters(actuator.parameters, f"actuator/{actuator.kind}", base),
+            **sheet.parameters(_bounded(actuator.parameters, base, autolimits=sheet.settings.autolimits), f"actuator/{actuator.kind}", base),
             **sheet.kept_attributes(key),
         }
         items.append((key, tag_of(actuator.kind, attributes, sheet.inside(key), key)))
     sheet.write_section("actuator", items)
+
+
+def _bounded(parameters: Parameters, base: Mapping[str, str], *, autolimits: bool) -> Parameters:
+    """The parameters, with no limit of the class: an actuator that has none was not read with that class."""
+    own = dict(parameters)
+    needed = () if autolimits else [flag for flag, span in LIMITED.items() if flag not in own and is_range(own.get(span))]
+    free = {name: text for name, text in UNBOUNDED.items() if name in base and name not in own and name not in needed}
+    return (*parameters, *dict.fromkeys(needed, "true").items(), *free.items())
 
 
 def _targets(sheet: MjcfSheet, drive: Drive, arcs: tuple[RobotArc, ...], base: Mapping[str, str]) -> Attributes:

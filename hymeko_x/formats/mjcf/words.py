@@ -191,6 +191,18 @@ LAW = (
 )
 """Other parameters of its law; typed even where its class gives them, behind the actuator's own."""
 
+UNBOUNDED: Mapping[str, str] = MappingProxyType(
+    {
+        **dict.fromkeys(("ctrllimited", "forcelimited", "actlimited"), "auto"),
+        **dict.fromkeys(("ctrlrange", "forcerange", "actrange"), "0 0"),
+        "inheritrange": "0",
+    }
+)
+"""What is written of an actuator that has none of these parameters, where its class gives one: MuJoCo's own defaults."""
+
+LIMITED: Mapping[str, str] = MappingProxyType({"ctrllimited": "ctrlrange", "forcelimited": "forcerange", "actlimited": "actrange"})
+"""The parameters that say whether a range applies. An actuator with a range needs one where <compiler autolimits> is false."""
+
 TENDON_PARAMETERS = (
     "springlength",
     "margin",
@@ -228,3 +240,8 @@ SENSED_TYPES: Mapping[str, str] = MappingProxyType({"body": "body", "xbody": "bo
 
 ALONE = frozenset({"site", "joint", "tendon", "actuator", "body", "geom", "camera"})
 """Sensed elements whose arc needs no role: the attribute follows from the kind of the target."""
+
+
+def is_range(value: object) -> bool:
+    """Whether a parameter is a range that bounds anything: MuJoCo takes two zeros for none."""
+    return isinstance(value, tuple) and any(value)

@@ -6,16 +6,20 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf.words import LAW, RESOLVED, TRANSMISSIONS
+from hymeko_x.formats.mjcf.codec import parameter_text
+from hymeko_x.formats.mjcf.words import LAW, LIMITED, RESOLVED, TRANSMISSIONS, UNBOUNDED, is_range
 from hymeko_x.frontends.mjcf.mounts import take_parameters
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Actuator, Drive
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import RobotArc
+    from hymeko_x.ir.parts import Parameters
 
 _KINDS = {"jointinparent": "joint", "cranksite": "site", "slidersite": "site", "refsite": "site"}
 _ROLES = {"cranksite": "crank", "slidersite": "slider", "refsite": "reference"}
@@ -46,13 +50,23 @@ def _read_actuator(element: Element, builder: MjcfBuilder) -> None:
     if not words and gear is not None:
         element.attributes["gear"] = gear
     kind = "jointinparent" if "jointinparent" in words else ""
-    builder.vertices[key] = Actuator(element.tag, take_parameters(element, base, RESOLVED, LAW))
+    given = take_parameters(element, base, RESOLVED, LAW)
+    builder.vertices[key] = Actuator(element.tag, _own(given, base, autolimits=builder.settings.autolimits))
     builder.keep(element, key)
     builder.show(key)
     if words:
         drive = builder.names.take("drive", key.name)
         builder.edges[drive] = Edge(Drive(kind), tuple(arcs))
         builder.show(drive)
+
+
+def _own(parameters: Parameters, base: Mapping[str, str], *, autolimits: bool) -> Parameters:
+    """The parameters but for those that only take a limit of the class away, or say that a range applies where one has to say so."""
+    given = dict(parameters)
+    taken = {name for name, value in given.items() if name in base and parameter_text(value) == UNBOUNDED.get(name) != base[name]}
+    if not autolimits:
+        taken |= {flag for flag, span in LIMITED.items() if given.get(flag) == "true" and is_range(given.get(span))}
+    return tuple(pair for pair in parameters if pair[0] not in taken) if taken else parameters
 
 
 def _check(element: Element, attributes: dict[str, str], words: list[str], builder: MjcfBuilder) -> None:
