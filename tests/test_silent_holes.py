@@ -124,6 +124,23 @@ def test_options_that_change_nothing_are_refused(words: str, message: str, tmp_p
     assert [path.name for path in tmp_path.iterdir()] == ["a.hymeko"]
 
 
+@pytest.mark.parametrize(
+    ("base", "joint", "message"),
+    [
+        ("fixed", "<freejoint name='root'/>", "body 'palm' is not fixed: joint 'root' lets it float"),
+        ("free", "", "body 'palm' does not float: joint 'palm' fixes it to the world"),
+    ],
+)
+@pytest.mark.parametrize("target", ["xml", "urdf", "usda", "sdf"])
+def test_a_base_that_is_not_what_is_asked_for_is_reported(
+    base: str, joint: str, message: str, target: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = f"<mujoco><worldbody><body name='palm'>{joint}<geom size='.1'/></body></worldbody></mujoco>"
+    (tmp_path / "a.xml").write_text(text)
+    assert main(["convert", str(tmp_path / "a.xml"), str(tmp_path / f"b.{target}"), "--base", base]) == 0
+    assert f"warning[HX101]: {message}\n" in capsys.readouterr().err
+
+
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="only Linux has a device that is always full")
 @pytest.mark.parametrize("command", ["import a.hymeko > /dev/full", "import a.hymeko -o /dev/full", "info a.hymeko > /dev/full"])
 def test_a_full_device_is_one_diagnostic(command: str, tmp_path: Path) -> None:
@@ -162,6 +179,13 @@ def test_a_pendulum_swings_because_its_centre_of_mass_is_that_of_its_shapes(targ
     assert rod.com == pytest.approx((0.0, 0.0, -0.5))
     assert rod.tensor is not None
     assert rod.tensor[0] == rod.tensor[1] == pytest.approx(1 / 12, rel=0.06)
+
+
+@pytest.mark.unread("HX101")
+def test_a_centre_of_mass_that_the_shapes_give_is_no_loss(tmp_path: Path) -> None:
+    (tmp_path / "p.hymeko").write_text(PENDULUM)
+    losses = hx.convert(tmp_path / "p.hymeko", tmp_path / "p.urdf").losses or ()
+    assert [str(loss) for loss in losses if "inertial" in loss.field] == []
 
 
 def test_a_centre_of_mass_that_is_given_stays() -> None:

@@ -9,7 +9,7 @@ from hymeko_x import formats
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, numbers_weight, pose_weight
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import MESH_POINTS, Body, DofKind, Joint, Mesh, Mount, Sense, Shape, Stance
-from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
+from hymeko_x.ir.values import ZERO, X, Z, apply, compose, cross, inverse, rotate, rotation_angle
 from hymeko_x.rewrite.efforts import actuator_efforts
 from hymeko_x.rewrite.sites import is_link
 
@@ -36,9 +36,9 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
     """The differences from ``before`` to ``after`` without those that are none of the robot.
 
     No loss is: another axis of a ball or a free joint, which has none; another mass or density of a shape without one, on the world or
-    on a body whose mass and tensor are given; other frames of a joint that moves its body alike; an effort limit that is what the actuators
-    of the source can exert; a frame that is where the body of its name is; a pose that is a keyframe; a sensor or a camera in a fragment.
-    What an author wrote counts, used or not.
+    on a body whose mass and tensor are given; a centre of mass and a tensor that HyMeKo text leaves to the shapes; other frames of a joint
+    that moves its body alike; an effort limit that is what the actuators of the source can exert; a frame that is
+    where the body of its name is; a pose that is a keyframe; a sensor or a camera in a fragment. What an author wrote counts, used or not.
     """
     alike: dict[Id, bool] = {}
     native = formats.native_format(before)
@@ -53,6 +53,8 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
             continue
         if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _needs_no_weight(before, key, difference.field):
             continue
+        if native is None and _is_weight_of_shapes(before, difference):
+            continue
         if efforts and _is_effort_of_actuators(difference, after, efforts, tolerance):
             continue
         if key.kind == "joint" and _FRAMES.fullmatch(difference.field):
@@ -64,7 +66,7 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
 
 
 def _is_described_otherwise(difference: Difference, before: Mechanism, after: Mechanism) -> bool:
-    """A name where there was none, or which is that of the file; a world, which its shapes imply; the points of a mesh, which are those of its file."""
+    """A name where there was none, or that of the file; a world, which its shapes imply; the points of a mesh, which its file has."""
     key, field = difference.element, difference.field
     if key == WORLD:
         return not field
@@ -133,6 +135,19 @@ def _needs_no_weight(mechanism: Mechanism, shape: Id, field: str) -> bool:
     body = mechanism.part(owner, Body)
     inertial = None if body is None else body.inertial
     return owner == WORLD or (inertial is not None and inertial.mass is not None and inertial.tensor is not None)
+
+
+def _is_weight_of_shapes(mechanism: Mechanism, difference: Difference) -> bool:
+    """Whether the centre of mass or the tensor of a body differs that has a mass and neither of them: its shapes give them."""
+    body = mechanism.part(difference.element, Body)
+    inertial = None if body is None else body.inertial
+    return (
+        inertial is not None
+        and inertial.tensor is None
+        and inertial.com == ZERO
+        and difference.field.startswith(("inertial.com", "inertial.tensor"))
+        and bool(mechanism.shapes.get(difference.element))
+    )
 
 
 def _is_idle_axis(mechanism: Mechanism, difference: Difference) -> bool:

@@ -59,9 +59,8 @@ def _with_bases(mechanism: Mechanism, *, is_free: bool, report: Report) -> Mecha
     """Each open base gets a fixed or a free joint to the world."""
     worlds = {WORLD, *[root for root in mechanism.roots if stands_for_world(root, mechanism)]}
     open_bases = [root for root in mechanism.roots if root not in worlds and root not in mechanism.parent_joint]
-    if is_free and not open_bases:
-        _report_fixed_bases(mechanism, worlds, report)
     if not open_bases:
+        _report_bases(mechanism, worlds, is_free, report)
         return mechanism
     names = names_in_use(mechanism)
     joint, suffix = (Joint((Dof(DofKind.FREE, Z),)), "free") if is_free else (Joint(), "base")
@@ -71,17 +70,15 @@ def _with_bases(mechanism: Mechanism, *, is_free: bool, report: Report) -> Mecha
     return mechanism if is_free else mechanism.with_note(edges, UNNAMED, True)
 
 
-def _report_fixed_bases(mechanism: Mechanism, worlds: set[Id], report: Report) -> None:
-    """Report the joints that fix bases to the world; none when the base floats already."""
+def _report_bases(mechanism: Mechanism, worlds: set[Id], is_free: bool, report: Report) -> None:
+    """Report the joints because of which bases are not as the user asks."""
+    hint = "remove that joint or the link 'world' to let the robot float" if is_free else "remove that joint to let the robot be fixed"
     for joint in (joint for world in worlds for joint in mechanism.children.get(world, ())):
-        if not joint.joint.dofs:
-            report.warn(
-                codes.REWRITTEN,
-                f"{joint.child} does not float: {joint.id} fixes it to the world",
-                mechanism.origin(joint.id),
-                element=str(joint.child),
-                hint="remove that joint or the link 'world' to let the robot float",
-            )
+        kinds = [dof.kind for dof in joint.joint.dofs]
+        if kinds != ([] if is_free else [DofKind.FREE]):
+            continue
+        what = f"does not float: {joint.id} fixes it to the world" if is_free else f"is not fixed: {joint.id} lets it float"
+        report.warn(codes.REWRITTEN, f"{joint.child} {what}", mechanism.origin(joint.id), element=str(joint.child), hint=hint)
 
 
 # ---- actuators ---------------------------------------------------------------------------------------------------------------

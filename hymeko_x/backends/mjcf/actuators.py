@@ -31,11 +31,12 @@ def write_actuators(sheet: MjcfSheet) -> None:
     for key, actuator in sheet.mechanism.vertices(Actuator):
         own_class = sheet.own_class(key)
         base = sheet.base(actuator.kind if actuator.kind != "plugin" else "general", own_class)
+        parameters = _bounded(actuator.parameters, base, autolimits=sheet.settings.autolimits)
         attributes = {
             "name": sheet.name(key),
             "class": own_class,
             **_targets(sheet, *drives[key], base),
-            **sheet.parameters(_bounded(actuator.parameters, base, autolimits=sheet.settings.autolimits), f"actuator/{actuator.kind}", base),
+            **sheet.parameters(parameters, f"actuator/{actuator.kind}", base),
             **sheet.kept_attributes(key),
         }
         items.append((key, tag_of(actuator.kind, attributes, sheet.inside(key), key)))
