@@ -13,7 +13,7 @@ from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import relevant
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
-from hymeko_x.edits.unnamed import unnamed_bodies, with_same_numbers
+from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_numbers
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
@@ -79,6 +79,7 @@ class Conversion:
         self.files, self.home = edited.files, home
         self.folder = os.path.dirname(edited.name) or "."
         self._used: Guess | None = None
+        self._asked: frozenset[tuple[Id, str, str | None]] | None = None
         self._homes: dict[Id, Id] = {}
 
     @property
@@ -98,6 +99,8 @@ class Conversion:
         residue = residue_of(mechanism, guess.image)
         self._homes = homes = dict(residue.alignment.names)
         self.edited = with_same_numbers(self._read, guess.image, self._unnamed_bodies())
+        if self._asked is None:
+            self._asked = frozenset(map(_aim, diff(guess.image, self.edited, TOLERANCE)))
         names = self._renames(guess.image)
         restored = restore(self._under(names, self._with_inertials(guess.image), guess.image), residue, notes).mechanism
         own = {new: homes.get(old, old) for new, old in names.given.items() if not _is_beside(new, old)}
@@ -130,7 +133,35 @@ class Conversion:
         words: dict[bool, list[str]] = {True: [], False: []}
         for new, old in names.given.items():
             words[self._is_made(new, old)].append(f"{old.kind} '{old.name}' is called '{new.name}'")
+        words[True] += [
+            f"{old.kind} '{old.name}' is called '{new.name}'" for new, old in names.made.items() if self._is_called_anew(new, old)
+        ]
         return Left({*names.given, *names.given.values()}, words[False], words[True], [str(edit) for edit in rest if _is_telling(edit)])
+
+    def unmet(self) -> Iterator[tuple[Id, str]]:
+        """What EDITED has and ORIGINAL, as it was converted last, does not have: by the element of ORIGINAL, in words.
+
+        Both files are compared name by name, so that no way to see two robots as the same one hides an edit. It counts what EDITED was
+        edited to have, and every other value of an element that was not edited. Names that did not arrive, and frames of joints, of which
+        several mean the same, are reported by themselves.
+        """
+        assert self._used is not None
+        image = self._used.image
+        names = self._renames(image)
+        edited = self._under(names, self.edited, image) if names.every else self.edited
+        touched = {element for element, _, _ in self._asked or ()}
+        for edit in diff(image, edited, TOLERANCE):
+            home = self._homes.get(edit.element, edit.element)
+            if _aim(edit) in (self._asked or ()) and not _is_frame(edit):
+                yield home, f"the edit did not arrive: {edit}"
+            elif edit.element not in touched and _is_value_of_shape(edit):
+                yield home, f"it changed with the edits: {edit.element} {edit.field} is {edit.before}, and {edit.after} in the edited file"
+
+    def lost_names(self) -> list[str]:
+        """The names in EDITED of shapes for which ORIGINAL has none, as where one shape of that name became several, in words."""
+        assert self._used is not None
+        found = diff(self._used.image, self.edited, TOLERANCE)
+        return [f"{edit.element} is called {edit.after}" for edit in found if _is_lost_name(edit)]
 
     def _is_made(self, new: Id, old: Id) -> bool:
         """Whether a name is one that a format made: of an element without one, or of one beside a link of its name."""
@@ -139,6 +170,13 @@ class Conversion:
         is_of_body = joint is not None and len(joint.joint.dofs) != 1
         is_named = home in self.mechanism.graph and self.mechanism.notation(home, UNNAMED) is None
         return is_of_body or not is_named or _is_beside(new, old)
+
+    def _is_called_anew(self, new: Id, old: Id) -> bool:
+        """Whether EDITED has a name for an element that has none by its own words, and that is not called after its body."""
+        joint = self.edited.joints.get(new)
+        return (
+            old.kind in ("body", "joint", "frame") and stem(new) != stem(old) and not (joint is not None and stem(joint.child) == stem(new))
+        )
 
     def _distance(self, image: Mechanism) -> int:
         """In how much the edited file differs from an image, apart from names."""
@@ -237,16 +275,39 @@ class Conversion:
             self.report.note(codes.OPTIONS_FOUND, f"the file was converted with {' '.join(found)}, as far as can be seen")
 
 
+def _aim(edit: Difference) -> tuple[Id, str, str | None]:
+    """What an edit aims at, whatever stood there before it."""
+    return edit.element, edit.field, edit.after
+
+
+def _is_frame(edit: Difference) -> bool:
+    """Whether an edit is one of where a joint is."""
+    return edit.element.kind == "joint" and ".weight" in edit.field
+
+
+def _is_lost_name(edit: Difference) -> bool:
+    """Whether a shape has a name in EDITED alone."""
+    return edit.element.kind == "shape" and edit.field == "name" and edit.before == "none"
+
+
+def _is_value_of_shape(edit: Difference) -> bool:
+    """Whether a value of a shape differs, other than its name and what its mass follows from."""
+    return edit.element.kind == "shape" and edit.field not in ("", "name", "mass", "density") and None not in (edit.before, edit.after)
+
+
 def _is_telling(edit: Difference) -> bool:
     """Whether a difference that is left is an edit, and not a value that one of two equal robots leaves to be computed."""
     if None in (edit.before, edit.after):
         return edit.element.kind in _WHOLE and not edit.field
-    is_weight = edit.element.kind == "shape" and edit.field in ("mass", "density")
-    return not is_weight and not {"none", "[]"} & {edit.before, edit.after}
+    if edit.element.kind == "shape" and edit.field in ("mass", "density"):
+        return False
+    return edit.element.kind in _GIVEN or not {"none", "[]"} & {edit.before, edit.after}
 
 
-_WHOLE = frozenset({"body", "joint", "actuator", "sensor", "camera", "light", "coupling", "loop", "tendon", "contact"})
+_WHOLE = frozenset({"body", "joint", "shape", "actuator", "sensor", "camera", "light", "coupling", "loop", "tendon", "contact"})
 """The kinds of elements that no format computes from others."""
+_GIVEN = frozenset({"joint", "actuator", "sensor", "camera", "light", "tendon"})
+"""The kinds of elements of which no format computes values."""
 
 
 def _is_beside(new: Id, old: Id) -> bool:

@@ -56,10 +56,10 @@ def _same_bodies(edited: Mechanism, image: Mechanism, unnamed: Set[Id]) -> dict[
         if waiting:
             mine = [view.child for view in edited.children.get(parent, ()) if view.child in unnamed or view.child not in image.graph]
             pairs |= _same(edited, mine, image, waiting)
-    return {new: old for new, old in pairs.items() if new != old and _stem(new) == _stem(old)}
+    return {new: old for new, old in pairs.items() if new != old and stem(new) == stem(old)}
 
 
-def _stem(key: Id) -> str:
+def stem(key: Id) -> str:
     """The name without the number behind it."""
     return key.name.rstrip("0123456789").rstrip("#_")
 

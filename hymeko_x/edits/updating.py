@@ -119,7 +119,7 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
             break
         found.texts.report_printed(original, report)
         changed, beside, found = new, new_beside, later
-    _report_left(found, original, format, report)
+    _report_left(found, conversion, original, format, report, is_changed=bool(changed))
     if not changed:  # the original is the same already, in the words of its own format
         return Updated(first.before, (), original.data, {}, {}, {}, report)
     report.extend(conversion.notes)
@@ -143,18 +143,22 @@ def _round(original: Source, format: Format, conversion: Conversion, edited: Sou
     return _Round(before, texts, beside, tuple(dropped), conversion.left())
 
 
-def _report_left(found: _Round, original: Source, format: Format, report: Report) -> None:
+def _report_left(found: _Round, conversion: Conversion, original: Source, format: Format, report: Report, *, is_changed: bool) -> None:
     """Report the edits that have no place in the original, after the last round."""
     lost = [edit for edit in found.lost if edit.element not in found.left.renamed]
     for edit in lost:
         message = f"the edit has no place in {format.name}: {edit}"
         report.warn(codes.EDIT_DROPPED, message, found.before.origin(edit.element), element=str(edit.element))
     found.texts.report_missing(original, report)
-    if not found.texts.missing:
-        _report_missing([*found.left.names, *(() if lost else found.left.edits)], original, report)
-        for words in found.left.made_names:
-            hint = f"{format.name} has no name for it there"
-            report.note(codes.EDIT_DROPPED, f"the edit did not arrive: {words}", Origin(original.name), hint=hint)
+    if found.texts.missing:
+        return
+    known = {edit.element for edit in lost}
+    unmet = [words for element, words in conversion.unmet() if element not in known] if is_changed else []
+    missing = [f"the edit did not arrive: {words}" for words in (*found.left.names, *(() if lost else found.left.edits))]
+    _report_missing([*dict.fromkeys([*missing, *unmet])], original, report)
+    for name in dict.fromkeys([*found.left.made_names, *(conversion.lost_names() if is_changed else ())]):
+        hint = f"{format.name} has no name for it there"
+        report.note(codes.EDIT_DROPPED, f"the edit did not arrive: {name}", Origin(original.name), hint=hint)
 
 
 def _without_inertials(before: Mechanism, after: Mechanism, bodies: Set[str]) -> Mechanism:
@@ -181,7 +185,7 @@ def _with_imported_names(before: Mechanism, after: Mechanism, imported: frozense
 def _report_missing(missing: list[str], original: Source, report: Report) -> None:
     """Warn of edits that have no place in the original, by what the edited file has."""
     for words in missing[:_MOST_MISSING]:
-        report.warn(codes.EDIT_DROPPED, f"the edit did not arrive: {words}", Origin(original.name))
+        report.warn(codes.EDIT_DROPPED, words, Origin(original.name))
     if len(missing) > _MOST_MISSING:
         report.warn(codes.EDIT_DROPPED, f"{len(missing) - _MOST_MISSING} more edits did not arrive", Origin(original.name))
 

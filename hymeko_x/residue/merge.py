@@ -17,6 +17,7 @@ from hymeko_x.ir.parts import Body, Drive, Mount, Plane, Sense, Shape
 from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.alike import holds, is_alike
 from hymeko_x.residue.landmarks import renamed_since
+from hymeko_x.residue.parts import GEOMETRY, broken, parts_of
 from hymeko_x.residue.realign import realign, with_new_names, with_old_names
 from hymeko_x.residue.sides import by_kind, moved, with_sides
 from hymeko_x.residue.stand_ins import with_stand_ins
@@ -73,6 +74,10 @@ class _Merge:
     edges: dict[Id, RobotEdge] = field(init=False)
     values: int = 0
     """How many values of the source have been put in."""
+    _parts: dict[Id, list[Element]] = field(init=False)
+    """The other parts of shapes that the image has in several."""
+    _broken: set[Id] = field(init=False)
+    """Those of which one part was edited by itself."""
     _shapes_then: dict[Id, list[Element]] = field(init=False)
     """The shapes that bodies had in the image, of those that the residue tells of."""
 
@@ -83,6 +88,8 @@ class _Merge:
         for element in (*self.residue.removals, *self.residue.weights):
             if element.id.kind == "shape" and isinstance(element.part, Edge):
                 self._shapes_then[_body_of(element.part)].append(element)
+        self._parts = parts_of(self.residue)
+        self._broken = broken(self.image, self._parts)
         name = self._change_fields()
         kept, withheld = self._edited_shapes()
         self._add(withheld)
@@ -118,7 +125,8 @@ class _Merge:
         return str(change.value)
 
     def _changed(self, key: Id, part: P, changes: list[Change]) -> P:
-        edited = [change for change in changes if not self._still_holds(key, part, change)]
+        is_broken = key in self._broken
+        edited = [change for change in changes if (is_broken and change.path == GEOMETRY) or not self._still_holds(key, part, change)]
         if edited:
             self._note(key, f"was edited: {', '.join(dict.fromkeys(_path_text(change.path) for change in edited))} stays as it is now")
         barred = _barred(part, changes, edited) if edited else set()
@@ -156,13 +164,13 @@ class _Merge:
         Shapes of one name on one body belong together.
         """
         stand_ins: dict[object, list[Element]] = defaultdict(list)
+        parts = {part.id for others in self._parts.values() for part in others}
+        loose = {part.id for key in self._broken for part in self._parts[key]}
         for removal in self.residue.removals:
-            if removal.id.kind == "shape":
+            if removal.id.kind == "shape" and removal.id not in parts:
                 stand_ins[_group_of(removal)].append(removal)
         edited = {group for group, members in stand_ins.items() if not all(map(self._is_untouched, members))}
-        if not edited:
-            return set(), set()
-        kept = {removal.id for group in edited for removal in stand_ins[group]}
+        kept = loose | {removal.id for group in edited for removal in stand_ins[group]}
         withheld = {added.id for added in self.residue.additions if added.id.kind == "shape" and _group_of(added) in edited}
         for key in withheld:
             self._note(key, "is not restored, because what stands for it was edited")
@@ -190,11 +198,12 @@ class _Merge:
     def _remove(self, kept: set[Id]) -> dict[Id, VertexPart | RobotEdge]:
         """Take away what only the image has, unless it was edited."""
         gone: dict[Id, VertexPart | RobotEdge] = {}
+        together = {part.id for parts in self._parts.values() for part in parts}
         for removal in self.residue.removals:
             key = removal.id
             if key in kept or key in gone or key not in self.image.graph:
                 continue
-            if not self._is_untouched(removal):
+            if key not in together and not self._is_untouched(removal):
                 self._note(key, "was edited, and stays")
                 continue
             gone[key] = self.vertices.pop(key) if key in self.vertices else self.edges.pop(key)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import Names
-from hymeko_x.ir.parts import Joint, Mesh, Role, Shape, Texture
+from hymeko_x.ir.parts import Joint, Material, Mesh, Role, Shape, Texture
 from hymeko_x.ir.values import IDENTITY, Pose
 from hymeko_x.source import file_stem
 
@@ -108,11 +108,14 @@ class _Pairs:
                 self._match(keys, waiting[ends])
 
     def _match(self, old: list[Id], new: list[Id]) -> None:
-        """Equal ones first, then namesakes of a sort, then in their order, then namesakes of any sort."""
+        """Equal ones first, at first by their colours, since formats have other materials; then namesakes of a sort, then in their order,
+        then namesakes of any sort.
+        """
         if len(old) == len(new) == 1 and _sort(self.source.edges[new[0]]) == _sort(self.image.edges[old[0]]):
             self.pair(old[0], new[0])
             return
         own = self.names.get
+        self._match_by(old, new, lambda edge: _appearance_of(self.image, edge), lambda edge: _appearance_of(self.source, edge))
         self._match_by(old, new, lambda edge: essence_of(self.image, edge, own), lambda edge: essence_of(self.source, edge))
         for key in old:
             if key in self.missing and _sort(self.source.edges[key]) == _sort(self.image.edges[key]):
@@ -219,6 +222,17 @@ def essence_of(graph: RobotGraph, edge: RobotEdge, own: Callable[[Id, Id], Id] =
     assets = tuple([_asset(graph, arc.target, own) for arc in edge.arcs if arc.target.kind in ("mesh", "material")])
     placed = [rounded(arc.weight or IDENTITY) for arc in edge.arcs if arc.sign > 0]
     return _sort(edge), rounded(edge.data.geometry), tuple(placed), assets
+
+
+def _appearance_of(graph: RobotGraph, edge: RobotEdge) -> object:
+    """What a shape is and which colour it has, whether that is its own or a material's. Of other edges their content."""
+    if not isinstance(edge.data, Shape):
+        return content_of(edge)
+    materials = (graph.vertices.get(arc.target) for arc in edge.arcs if arc.target.kind == "material")
+    colour = edge.data.rgba or next((part.rgba for part in materials if isinstance(part, Material)), None)
+    meshes = [_file_of(graph, arc.target) for arc in edge.arcs if arc.target.kind == "mesh"]
+    placed = [rounded(arc.weight or IDENTITY) for arc in edge.arcs if arc.sign > 0]
+    return _sort(edge), rounded(edge.data.geometry), tuple(placed), tuple(meshes), rounded(colour)
 
 
 def _asset(graph: RobotGraph, key: Id, own: Callable[[Id, Id], Id]) -> object:

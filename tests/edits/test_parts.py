@@ -1,0 +1,128 @@
+"""Shapes that a format shows in several parts: an edit of one part arrives, and so does what is beside it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import mujoco
+import pytest
+
+import hymeko_x as hx
+
+LEG = """<mujoco model="leg">
+  <worldbody>
+    <body name="leg">
+      <joint name="knee"/>
+      <geom type="capsule" size="0.1 0.5" group="3"/>
+      <geom type="capsule" size="0.2 0.5" pos="1 0 0" group="3"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+OTHER = '      <geom type="capsule" size="0.2 0.5" pos="1 0 0" group="3"/>\n'
+BALL = '<origin xyz="0 0 0.5" rpy="0 0 0"/>\n      <geometry>\n        <sphere radius="0.1"/>'
+BAR = '<cylinder radius="0.1" length="1"/>'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "shapes"),
+    [
+        (BALL, BALL.replace('"0.1"', '"0.3"'), ["cylinder 0.1", "sphere 0.3", "sphere 0.1"]),
+        (BALL, BALL.replace("0 0 0.5", "0 0.4 0.5"), ["cylinder 0.1", "sphere 0.1", "sphere 0.1"]),
+        (BAR, BAR.replace('"0.1"', '"0.3"'), ["cylinder 0.3", "sphere 0.1", "sphere 0.1"]),
+        (BAR, '<box size="0.6 1 1"/>', ["box 0.3", "sphere 0.1", "sphere 0.1"]),
+        (f"<collision>\n      <geometry>\n        {BAR}\n      </geometry>\n    </collision>\n", "", ["sphere 0.1", "sphere 0.1"]),
+    ],
+    ids=["size", "place", "first", "geometry", "removed"],
+)
+@pytest.mark.unread("HX101", "HX108")
+def test_an_edit_of_one_part_of_a_capsule_arrives(old: str, new: str, shapes: list[str], tmp_path: Path) -> None:
+    original, there = tmp_path / "leg.xml", tmp_path / "leg.urdf"
+    original.write_text(LEG)
+    hx.convert(original, there)
+    text = there.read_text()
+    assert text.count(old) == 1
+    there.write_text(text.replace(old, new))
+    hx.update(original, there)
+    model = mujoco.MjModel.from_xml_path(str(original))
+    kinds = [mujoco.mjtGeom(kind).name.removeprefix("mjGEOM_").lower() for kind in model.geom_type]
+    found = [f"{kind} {size[0]:g}" for kind, size in zip(kinds, model.geom_size, strict=True)]
+    assert sorted(found) == sorted([*shapes, "capsule 0.2"])
+    assert OTHER in original.read_text()
+    again = hx.update(original, there)
+    assert (again.edits, [row for row in again.report if row.code.id == "HX118"]) == ((), [])
+
+
+@pytest.mark.unread("HX101")
+def test_a_capsule_whose_parts_change_together_stays_one(tmp_path: Path) -> None:
+    original, there = tmp_path / "leg.xml", tmp_path / "leg.urdf"
+    original.write_text(LEG.replace('group="3"', 'contype="0" conaffinity="0"'))
+    hx.convert(original, there)
+    text = there.read_text()
+    colour = "<material name='red'><color rgba='1 0 0 1'/></material>"
+    for part in [part for part in re.findall(r"<visual>.*?</visual>", text, flags=re.DOTALL) if 'radius="0.1"' in part]:
+        text = text.replace(part, part.replace("</visual>", f"{colour}</visual>"))
+    assert text.count(colour) == 3
+    there.write_text(text.replace('"0 0 0.5"', '"0 0.25 0.5"').replace('"0 0 -0.5"', '"0 0.25 -0.5"'))
+    there.write_text(there.read_text().replace("<visual>", '<visual><origin xyz="0 0.25 0"/>', 1))
+    hx.update(original, there)
+    assert original.read_text().count('type="capsule"') == 2
+    model = mujoco.MjModel.from_xml_path(str(original))
+    assert [list(place) for place in model.geom_pos] == [[0, 0.25, 0], [1, 0, 0]]
+    assert hx.update(original, there).edits == ()
+
+
+@pytest.mark.unread("HX101")
+def test_names_that_several_parts_cannot_share_are_noted(tmp_path: Path) -> None:
+    original, there = tmp_path / "leg.xml", tmp_path / "leg.urdf"
+    original.write_text(LEG.replace('<geom type="capsule" size="0.1', '<geom name="shin" type="capsule" size="0.1'))
+    hx.convert(original, there)
+    there.write_text(there.read_text().replace(BALL, BALL.replace('"0.1"', '"0.3"')))
+    found = [str(row) for row in hx.update(original, there).report if row.code.id == "HX118"]
+    words = ("leg/collision#3", "leg/collision#4")
+    where = f"{original}: note[HX118]: the edit did not arrive: shape"
+    assert found == [f"{where} '{name}' is called 'shin'\n  hint: mjcf has no name for it there" for name in words]
+
+
+BLACK = """<mujoco model="r">
+  <asset>
+    <material name="black" rgba="0.15 0.15 0.15 1"/>
+  </asset>
+  <worldbody>
+    <body name="b">
+      <joint name="j"/>
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      <geom type="box" size="1 2 3" quat="1 0 0 1" material="black" contype="0" conaffinity="0" group="2"/>
+      <geom type="box" size="1 2 3" quat="1 0 0 1"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101")
+def test_of_two_shapes_at_one_place_the_one_of_the_removed_colour_goes(tmp_path: Path) -> None:
+    original, there = tmp_path / "r.xml", tmp_path / "r.sdf"
+    original.write_text(BLACK)
+    hx.convert(original, there)
+    text, count = re.subn(r'<visual name="visual_2">.*?</visual>', "", there.read_text(), flags=re.DOTALL)
+    assert count == 1
+    there.write_text(text)
+    hx.update(original, there)
+    assert 'material="black" contype="0" conaffinity="0" group="2"/>' in original.read_text()
+    model = mujoco.MjModel.from_xml_path(str(original))
+    assert (list(model.geom_group), list(model.geom_contype)) == ([2, 3], [0, 1])
+
+
+def test_a_name_for_a_joint_that_has_none_is_noted(tmp_path: Path) -> None:
+    original, there = tmp_path / "r.xml", tmp_path / "r.json"
+    original.write_text(BLACK.replace('<joint name="j"/>', "<joint/>"))
+    hx.convert(original, there)
+    text = there.read_text()
+    assert '"joint","id":"b"' in text
+    there.write_text(text.replace('"joint","id":"b"', '"joint","id":"hip"').replace('["joint","b"]', '["joint","hip"]'))
+    found = hx.update(original, there)
+    assert found.edits == ()
+    note = f"{original}: note[HX118]: the edit did not arrive: joint 'b' is called 'hip'\n  hint: mjcf has no name for it there"
+    assert [str(row) for row in found.report] == [note]
