@@ -6,11 +6,13 @@ import struct
 from typing import TYPE_CHECKING
 
 from msgspec import NODEFAULT
+from msgspec.structs import replace
 
 from hymeko_x import formats
 from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Edge
-from hymeko_x.ir.values import are_numbers
+from hymeko_x.ir.parts import Role, Shape
+from hymeko_x.ir.values import IDENTITY, are_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -21,6 +23,8 @@ _FEWEST_DIGITS = 6
 """To how many digits MuJoCo rounds what it saves; other programs keep more."""
 _ROUNDED = 6e-6
 """By how much rounding changes a number at most, as a part of it."""
+_TURNED = 1e-5
+"""The same for a quaternion: of three angles that are rounded, each turns it by half of its error."""
 _WHOLES = frozenset({4, 6})
 """Lengths of quaternions and tensors, which programs compute anew from axes and angles: only their largest number counts."""
 
@@ -34,12 +38,22 @@ def is_alike(now: object, then: object) -> bool:
     if isinstance(then, NUMBERS) and isinstance(now, NUMBERS):
         return is_rounded(float(now), float(then))
     if isinstance(then, Edge) and isinstance(now, Edge):
+        then = _without_lost_colour(now, then)
         return len(now.arcs) == len(then.arcs) and is_alike(now.data, then.data) and all(map(_is_alike_arc, now.arcs, then.arcs))
     layout = layout_of(type(then))
     if layout is None or type(now) is not type(then):
         return now == then
     pairs = zip(layout.counting, layout.compared(now), layout.compared(then), strict=True)
     return all(item.name == "name" or is_alike(a, b) for item, a, b in pairs)
+
+
+def _without_lost_colour(now: Edge, then: Edge) -> Edge:  # type: ignore[type-arg]
+    """What an edge was; without the colour of a shape for collision alone that has none now: urdfdom drops it, and nothing shows it."""
+    if not (isinstance(now.data, Shape) and isinstance(then.data, Shape) and now.data.role is then.data.role is Role.COLLISION):
+        return then
+    if now.data.rgba is not None or any(arc.role == "material" for arc in now.arcs):
+        return then
+    return Edge(replace(then.data, rgba=None), tuple([arc for arc in then.arcs if arc.role != "material"]))
 
 
 def _is_alike_arc(now: RobotArc, then: RobotArc) -> bool:
@@ -52,7 +66,7 @@ def _are_alike(now: tuple[object, ...], then: tuple[object, ...]) -> bool:
     if now == then:
         return True
     if len(then) in _WHOLES and are_numbers(now) and are_numbers(then):
-        room = _ROUNDED * max(map(abs, then))  # type: ignore[arg-type]
+        room = (_TURNED if len(then) == len(IDENTITY.quat) else _ROUNDED) * max(map(abs, then))  # type: ignore[arg-type]
         return any(all(abs(sign * a - b) <= room for a, b in zip(now, then, strict=True)) for sign in _signs(then))  # type: ignore[operator]
     return all(map(is_alike, now, then))
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import mujoco
 import pytest
 import yourdfpy
+from lxml import etree
 from pxr import Usd
 
 import hymeko_x as hx
+from hymeko_x.compare.diff import Tolerance
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.parts import Tendon
 from tests.residue.samples import PLAIN_MJCF, URDF
@@ -17,6 +20,28 @@ from tests.residue.test_truth import GRIPPER
 
 ARM = """<mujoco model="arm"><worldbody><body name="link"><joint name="j"/><geom size=".1"/><site name="flange" pos="0 0 1"/>
 <body name="tip"><joint name="k"/><geom size=".1"/><site name="end"/></body></body></worldbody></mujoco>"""
+
+
+CAPSULES = """<mujoco model="walker">
+  <default><geom rgba="0.1 0.2 0.3 1" friction="0.7"/></default>
+  <asset><material name="skin" rgba="0.123456789 0.2 0.3 1"/></asset>
+  <worldbody>
+    <geom name="floor" type="plane" size="5 5 1"/>
+    <body name="torso" pos="0 0 1.2345678901">
+      <freejoint/>
+      <site name="chin" pos="0 0 0.1"/>
+      <geom name="chest" type="capsule" fromto="0.1 0.2 0.3 0.4 0.5 0.7123456789" size="0.05" material="skin"/>
+      <geom type="capsule" fromto="0 0 0 0 0.1 0" size="0.02" group="3"/>
+      <body name="leg" pos="0 0 -0.3" euler="10 20 30">
+        <joint name="hip" range="-40 50" armature="0.0123456789" damping="0.1"/>
+        <geom type="capsule" fromto="0 0 0 0 0 -0.3" size="0.04"/>
+        <site name="ankle" pos="0 0 -0.3"/>
+      </body>
+    </body>
+  </worldbody>
+  <tendon><spatial name="t"><site site="chin"/><site site="ankle"/></spatial></tendon>
+  <actuator><position name="hip" joint="hip" kp="12"/></actuator>
+</mujoco>"""
 
 
 @pytest.mark.parametrize("keep", ["beside", "inside"])
@@ -61,6 +86,44 @@ def test_yourdfpy_writes_it_anew(tmp_path: Path) -> None:
     missing = [found.element for found in hx.diff(source, home) if found.after is None and found.field == ""]
     assert {key.kind for key in missing} <= {"shape"}  # it makes a material of the colour of a shape
     assert any(home.edges(Tendon))
+
+
+def written_by_urdfdom(text: str) -> str:
+    """A URDF as urdfdom's `exportURDF` writes it (4.0.1): elements by their names, numbers with six digits, and only what urdfdom reads."""
+    root = etree.fromstring(text.encode(), etree.XMLParser(remove_comments=True))
+    for node in [node for node in root if node.tag not in ("link", "joint", "material")]:
+        root.remove(node)
+    root[:] = sorted(root, key=lambda node: (("material", "link", "joint").index(node.tag), node.get("name") or ""))
+    for shape in (*root.iter("visual"), *root.iter("collision")):
+        shape.attrib.pop("name", None)
+    for material in [*root.iter("material")]:
+        shape = material.getparent()
+        if shape is not None and shape.tag == "collision":
+            shape.remove(material)
+        elif material.find("texture") is None:
+            material.insert(0, etree.Element("texture"))
+    for joint in root.iter("joint"):
+        if joint.get("type") in ("fixed", "floating") and joint.find("axis") is None:
+            etree.SubElement(joint, "axis", xyz="0 0 0")
+    for node in root.iter():
+        for name, value in node.attrib.items():
+            with suppress(ValueError):
+                node.set(name, " ".join(f"{float(word):g}" for word in value.split()))
+    return etree.tostring(root, encoding="unicode")
+
+
+@pytest.mark.unread("HX101")
+def test_urdfdom_writes_it_anew(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(CAPSULES)
+    hx.convert(tmp_path / "a.xml", tmp_path / "b.urdf", keep="beside")
+    (tmp_path / "b.urdf").write_text(written_by_urdfdom((tmp_path / "b.urdf").read_text()))
+    report = Report()
+    source, home = hx.load(tmp_path / "a.xml").mechanism, hx.load(tmp_path / "b.urdf", report=report).mechanism
+    found = [str(each) for each in hx.diff(source, home, Tolerance(1e-5, 1e-5)) if each.field != "name"]
+    colour = "shape 'torso/collision' rgba: [0.1 0.2 0.3 1] -> none"
+    axis = """joint 'torso' urdf content: added <axis xyz="0 0 0"/>"""
+    assert found == [colour, axis]  # it has no colours of collision shapes, and writes an axis for every joint
+    assert [row.code.id for row in report] == ["HX112"]
 
 
 @pytest.mark.parametrize("keep", ["beside", "inside"])
