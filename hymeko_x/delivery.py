@@ -52,7 +52,8 @@ class Delivery(Struct, frozen=True):
             return replace(self, options=replace(self.options, keep="beside")).convert(report, measured=measured)
         package = self._copied(report)
         if package is not None and (self.is_archive or self._in_the_way(package, f"{safe_name(self.options.beside)}/") is None):
-            package = pipeline.with_kept(package, self.passed or Kept("", ""), self.options, report)
+            kept = self.passed or Kept("", "")
+            package = pipeline.with_kept(package, kept if kept.is_beside else kept._replace(text=""), self.options, report)
             return Result(self.mechanism, package, report, ())
         place = replace(self.place, in_the_way=self._in_the_way if self.path and not self.is_archive else None)
         result = pipeline.convert(
@@ -74,8 +75,7 @@ class Delivery(Struct, frozen=True):
         """The output with the source's own text, where that is the robot and holds neither more nor less than is to be kept."""
         if self.own is None or not self.path or replace(self.options, beside="", keep=None, lenient=False) != Options():
             return None
-        text = self.passed.text if self.passed is not None else ""
-        if text and (self.own.kept is None or self.options.keep == "inside"):
+        if self.passed is not None and self.passed.text and self.passed.is_beside is (self.options.keep == "inside"):
             return None
         return copied(self.own, self.format, self.mechanism, self.place, report)
 

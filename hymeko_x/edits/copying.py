@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import posixpath
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,8 @@ from hymeko_x.residue.align import align
 from hymeko_x.source import Package, PackageFiles
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files, Source
@@ -62,18 +65,50 @@ def _with_text(source: Source, format: Format, before: Mechanism, after: Mechani
     if after is not before:
         if format.outline is None:
             return None
-        changed = text_with_edits(source, format, before, after, Report()).changed
+        changed = text_with_edits(_with_placed(source, package), format, before, after, Report()).changed
     opened = source.files.opened if isinstance(source.files, DiskFiles) else {}
+    changed = {**changed, **_with_includes_below(source, changed, opened, home)}
     copies = {name: path for path in opened if (name := _below(path, home)) is not None and path not in changed}
-    files = {name: data for path, data in changed.items() if path != source.name and (name := _below(path, home)) is not None}
+    files = {name: data for path, data in changed.items() if path != source.name and (name := _name_below(path, home)) is not None}
     return replace(
         package, main=changed.get(source.name, source.data), files={**package.files, **files}, copies={**copies, **package.copies}
     )
 
 
+def _with_placed(source: Source, package: Package) -> Source:
+    """The source, around which the meshes and images of a package are already."""
+    if not isinstance(source.files, DiskFiles):
+        return source
+    return replace(source, files=Elsewhere(source.files, PackageFiles(package, source.files), source.files))
+
+
+def _with_includes_below(source: Source, changed: Mapping[str, bytes], opened: Iterable[str], home: str) -> dict[str, bytes]:
+    """The texts that include files which stand above their folder or beside it, and these, with paths to where they are put: below it."""
+    suffix = os.path.splitext(source.name)[1]
+    texts = {source.name: changed.get(source.name, source.data)}
+    texts |= {path: changed.get(path) or source.files.read(path) for path in opened if path.endswith(suffix)}
+    moved: set[str] = set()
+    for path in [path for path in texts if _below(path, home) is None]:
+        old, new = (f'"{name}"'.encode() for name in (_relative(path, home), _name_below(path, home)))
+        users = [user for user, text in texts.items() if old in text]
+        for user in users:
+            texts[user] = texts[user].replace(old, new)
+        moved |= {path, *users} if users else set()
+    return {path: texts[path] for path in moved}
+
+
+def _relative(path: str, home: str) -> str:
+    return os.path.relpath(path, home).replace(os.sep, "/")
+
+
+def _name_below(path: str, home: str) -> str | None:
+    """The path below a folder at which a file is put that may stand above it."""
+    return _below(path, home) or re.sub(r"^(\.\./)+", "", _relative(path, home))
+
+
 def _below(path: str, home: str) -> str | None:
     """The path from a folder to a file in it or below it."""
-    relative = os.path.relpath(path, home).replace(os.sep, "/")
+    relative = _relative(path, home)
     return None if relative.startswith("../") or "[" in relative else relative
 
 
@@ -100,7 +135,9 @@ def _is_same_robot(package: Package, source: Source, format: Format, mechanism: 
     files = Elsewhere(source.files, PackageFiles(package, source.files), DiskFiles(Path(folder)))
     try:
         name = os.path.join(folder, os.path.basename(source.name))
-        found = pipeline.read_anyway(replace(source, name=name, data=package.main, files=files, kept=None), format, Report())
+        found = pipeline.read_anyway(
+            replace(source, name=name, data=package.main, files=files, kept=None, ignores_kept=True), format, Report()
+        )
     except Refusal:
         return False
     return not diff(mechanism, align(found, mechanism)[1], TOLERANCE)

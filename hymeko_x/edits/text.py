@@ -70,15 +70,15 @@ class PackagesBehind(Struct, frozen=True):
 
     def find_package(self, name: str, beside: str = "") -> str | None:
         """The folder of a package, or None."""
-        return self.behind.find_package(name, beside) if isinstance(self.behind, DiskFiles) else None
+        return self.behind.find_package(name, beside) if isinstance(self.behind, DiskFiles | PackagesBehind) else None
 
     def guess_package(self, name: str, beside: str = "") -> str | None:
         """A folder that may be the package under another name, or None."""
-        return self.behind.guess_package(name, beside) if isinstance(self.behind, DiskFiles) else None
+        return self.behind.guess_package(name, beside) if isinstance(self.behind, DiskFiles | PackagesBehind) else None
 
     def match(self, pattern: str) -> list[str]:
         """The files that a path with wildcards names."""
-        return self.behind.match(pattern) if isinstance(self.behind, DiskFiles) else []
+        return self.behind.match(pattern) if isinstance(self.behind, DiskFiles | PackagesBehind) else []
 
 
 class EditedFiles(PackagesBehind, frozen=True):

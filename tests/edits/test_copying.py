@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import mujoco
 import pytest
 
 import hymeko_x as hx
@@ -11,6 +12,7 @@ from hymeko_x import disk, formats, pipeline
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.copying import copied
 from tests.edits.test_update import ARM
+from tests.mjcf.mjmodels import differences
 from tests.residue.samples import MJCF
 
 XACRO = """<?xml version="1.0"?>
@@ -58,16 +60,6 @@ def test_of_a_file_that_moves_only_the_path_changes(tmp_path: Path) -> None:
     assert (tmp_path / "b/meshes/plate.stl").exists()
 
 
-def test_what_a_text_includes_from_above_its_folder_becomes_part_of_a_new_text(tmp_path: Path) -> None:
-    for folder in ("a", "b/c"):
-        (tmp_path / folder).mkdir(parents=True)
-    (tmp_path / "arm.xml").write_text('<mujoco><worldbody><body name="x"><geom size="1"/></body></worldbody></mujoco>')
-    (tmp_path / "a/m.xml").write_text('<mujoco model="m"><include file="../arm.xml"/></mujoco>')
-    hx.convert(tmp_path / "a/m.xml", tmp_path / "b/c/m.xml")
-    assert "include" not in (tmp_path / "b/c/m.xml").read_text()
-    assert hx.diff(hx.load(tmp_path / "a/m.xml").mechanism, hx.load(tmp_path / "b/c/m.xml").mechanism) == ()
-
-
 def test_an_option_that_changes_the_robot_gives_a_new_text(tmp_path: Path) -> None:
     source, target = tmp_path / "a.urdf", tmp_path / "b.urdf"
     source.write_text(ARM)
@@ -84,3 +76,36 @@ def test_a_real_robot_keeps_its_bytes(robot: Path) -> None:
     beside = copied(source, format, mechanism, pipeline.Place(str(robot.parent)), Report())
     assert beside is not None
     assert (beside.main, beside.files, beside.copies) == (source.data, {}, {})
+
+
+def test_what_is_included_from_above_goes_along_below_the_output(tmp_path: Path) -> None:
+    for folder in ("home/robots", "home/parts/meshes", "home/meshes", "out"):
+        (tmp_path / folder).mkdir(parents=True)
+    tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 {}\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+    (tmp_path / "home/meshes/tip.obj").write_text(tetrahedron.format(1))
+    (tmp_path / "home/parts/meshes/tip.obj").write_text(tetrahedron.format(2))
+    main = '<mujoco>\n  <include file="../parts/assets.xml"/>\n  <asset><mesh name="tip" file="../meshes/tip.obj"/></asset>\n'
+    main += '  <worldbody>\n    <include file="../parts/finger.xml"/>\n  </worldbody>\n</mujoco>\n'
+    assets = '<mujocoinclude>\n  <asset>\n    <material name="red" rgba="1.0 0 0 1"/>\n  </asset>\n</mujocoinclude>\n'
+    finger = '<mujocoinclude>\n  <body><joint/>  <geom type="mesh" mesh="tip" material="red"/></body>\n</mujocoinclude>\n'
+    for name, text in (("robots/a.xml", main), ("parts/assets.xml", assets), ("parts/finger.xml", finger)):
+        (tmp_path / "home" / name).write_text(text)
+    hx.convert(tmp_path / "home/robots/a.xml", tmp_path / "out/a.xml")
+    assert (tmp_path / "out/a.xml").read_text() == main.replace("../", "")
+    assert [(tmp_path / "out" / name).read_text() for name in ("parts/assets.xml", "parts/finger.xml")] == [assets, finger]
+    before, after = (mujoco.MjModel.from_xml_path(str(tmp_path / name)) for name in ("home/robots/a.xml", "out/a.xml"))
+    assert differences(before, after) == []
+
+
+@pytest.mark.parametrize("suffix", ["urdf", "usda"])
+@pytest.mark.parametrize("folder", ["", "other"])
+@pytest.mark.unread("HX101")
+def test_what_is_kept_inside_goes_along_in_the_text_itself(suffix: str, folder: str, tmp_path: Path) -> None:
+    (tmp_path / "other").mkdir()
+    (tmp_path / "a.xml").write_text(MJCF)
+    first, second, plain = (tmp_path / name for name in (f"b.{suffix}", f"{folder}/c.{suffix}", f"{folder}/d.{suffix}"))
+    hx.convert(tmp_path / "a.xml", first, keep="inside")
+    hx.convert(first, second, keep="inside")
+    assert second.read_bytes() == first.read_bytes()
+    hx.convert(first, plain)
+    assert "residue" not in plain.read_text()

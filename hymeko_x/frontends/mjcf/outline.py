@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.frontends.mjcf.expand import included_source
 from hymeko_x.outline import Outline, TextFile
+from hymeko_x.source import file_stem
 from hymeko_x.xml.outline import STYLE, block_of
 from hymeko_x.xml.parse import parse
 
@@ -13,6 +14,10 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.source import Source
     from hymeko_x.xml.tree import Node
+
+
+_CALLED_AS_FILE = frozenset({"mesh", "texture", "hfield", "skin"})
+"""The elements that are called after their files where they have no name."""
 
 
 def outline(source: Source, report: Report) -> Outline:
@@ -28,7 +33,11 @@ def outline(source: Source, report: Report) -> Outline:
         node.children = [inner for child in node.children for inner in _included(child, source, report, files)]
         stack += node.children
     datas = {name: file.data for name, file in files.items()}
-    return Outline(block_of(document.root, document.data, datas), files, source.name, STYLE)
+    root = block_of(document.root, document.data, datas)
+    for block in root.walk():
+        if block.tag in _CALLED_AS_FILE and not block.name and "file" in block.fields:
+            block.name = file_stem(block.fields["file"].text)
+    return Outline(root, files, source.name, STYLE)
 
 
 def _included(node: Node, source: Source, report: Report, files: dict[str, TextFile]) -> list[Node]:
