@@ -151,11 +151,12 @@ class Conversion:
         edited = self._under(names, self.edited, image) if names.every else self.edited
         touched = {element for element, _, _ in self._asked or ()}
         for edit in diff(image, edited, TOLERANCE):
-            home = self._homes.get(edit.element, edit.element)
             if _aim(edit) in (self._asked or ()) and not _is_frame(edit):
-                yield home, f"the edit did not arrive: {edit}"
-            elif edit.element not in touched and _is_value_of_shape(edit):
-                yield home, f"it changed with the edits: {edit.element} {edit.field} is {edit.before}, and {edit.after} in the edited file"
+                yield self._homes.get(edit.element, edit.element), f"the edit did not arrive: {edit}"
+        for edit in diff(image, rename(edited, reordered_shapes(edited, image)), TOLERANCE):
+            if edit.element not in touched and _is_value_of_shape(edit):
+                words = f"it changed with the edits: {edit.element} {edit.field} is {edit.before}, and {edit.after} in the edited file"
+                yield self._homes.get(edit.element, edit.element), words
 
     def lost_names(self) -> list[str]:
         """The names in EDITED of shapes for which ORIGINAL has none, as where one shape of that name became several, in words."""
