@@ -142,8 +142,8 @@ class Conversion:
         """What EDITED has and ORIGINAL, as it was converted last, does not have: by the element of ORIGINAL, in words.
 
         Both files are compared name by name, so that no way to see two robots as the same one hides an edit. It counts what EDITED was
-        edited to have, and every other value of an element that was not edited. Names that did not arrive, and frames of joints, of which
-        several mean the same, are reported by themselves.
+        edited to have, and every other value of a shape that was not edited. Names that did not arrive, and what has several forms of one
+        meaning, are reported by :meth:`left`.
         """
         assert self._used is not None
         image = self._used.image
@@ -151,7 +151,7 @@ class Conversion:
         edited = self._under(names, self.edited, image) if names.every else self.edited
         touched = {element for element, _, _ in self._asked or ()}
         for edit in diff(image, edited, TOLERANCE):
-            if _aim(edit) in (self._asked or ()) and not _is_frame(edit):
+            if _aim(edit) in (self._asked or ()) and not _has_other_forms(edit):
                 yield self._homes.get(edit.element, edit.element), f"the edit did not arrive: {edit}"
         for edit in diff(image, rename(edited, reordered_shapes(edited, image)), TOLERANCE):
             if edit.element not in touched and _is_value_of_shape(edit):
@@ -281,8 +281,10 @@ def _aim(edit: Difference) -> tuple[Id, str, str | None]:
     return edit.element, edit.field, edit.after
 
 
-def _is_frame(edit: Difference) -> bool:
-    """Whether an edit is one of where a joint is."""
+def _has_other_forms(edit: Difference) -> bool:
+    """Whether an edit is of what two equal robots have in several forms: the frames of a joint, a geom as a visual and a collision."""
+    if edit.element.kind == "shape":
+        return not edit.field
     return edit.element.kind == "joint" and ".weight" in edit.field
 
 
