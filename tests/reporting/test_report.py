@@ -124,7 +124,7 @@ def test_cassie_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest.Cap
     """From SDF, the format in which a package has it with its loops."""
     source = real_robot(next(file for file in catalog.development_files("sdf") if file.path.endswith("cassie_v2.sdf")))
     assert reported(source, capsys) == [
-        "wrote out.urdf (23 bodies, 23 joints)",
+        "wrote out.urdf (23 bodies, 23 joints) and 12 files in meshes/",
         "dropped: 4 loops: 'left-pitch-rod-joint', 'right-pitch-rod-joint', ...",
         "dropped: stiffness of 4 joints, up to 1500 N m/rad: 'left-knee-shin-joint', 'left-tarsus-spring-joint', ...",
         "dropped: 31 settings that only sdf has: <self_collide>, <plugin>, <xyz>, <surface>, ...",
