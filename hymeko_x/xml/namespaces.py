@@ -40,10 +40,14 @@ def without_declared(text: str, declared: Mapping[str, str]) -> str:
     return name[0] + rest
 
 
-def with_declared(text: str, declared: Mapping[str, str]) -> str:
-    """An element's text with the declarations (attribute -> uri) of those prefixes that it uses and does not declare, by name."""
+def with_declared(text: str, declared: Mapping[str, str], *, again: bool = False) -> str:
+    """An element's text with the declarations (attribute -> uri) of those prefixes that it uses and does not declare, by name.
+
+    ``again``: also of those that only elements in it declare.
+    """
     name = _HEAD.match(text)
-    needed = {word: declared[word] for word in sorted(declared) if f"{word.removeprefix(PREFIX)}:" in text and f"{word}=" not in text}
+    own = text.partition(">")[0] if again else text
+    needed = {word: declared[word] for word in sorted(declared) if f"{word.removeprefix(PREFIX)}:" in text and f"{word}=" not in own}
     return text if name is None or not needed else name[0] + attributes_text(needed) + text[name.end() :]
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -92,3 +93,15 @@ def test_a_robot_of_another_format_has_none(tmp_path: Path) -> None:
     )
     hx.convert(tmp_path / "m.xml", tmp_path / "m.urdf")
     assert b"<gazebo" not in (tmp_path / "m.urdf").read_bytes()
+
+
+@pytest.mark.parametrize("target", ["r.urdf", "r.xacro"])
+def test_prefixes_that_the_root_of_sdf_declares_are_declared_in_fragments(target: str, tmp_path: Path) -> None:
+    sensor = '<sensor name="eye" type="camera" my:test="1"><camera><clip my:test="2"><near>0.1</near><far>9</far></clip></camera></sensor>'
+    (tmp_path / "r.sdf").write_text(
+        f'<sdf version="1.9" xmlns:my="urn:my"><model name="r"><link name="a"><my:note>x</my:note>{sensor}</link></model></sdf>'
+    )
+    hx.convert(tmp_path / "r.sdf", tmp_path / target)
+    (fragment,) = re.findall(r"<gazebo.*?</gazebo>", (tmp_path / target).read_text("utf-8"), re.DOTALL)
+    assert fragment.startswith('<gazebo xmlns:my="urn:my" reference="a">')
+    assert '<sensor name="eye" type="camera" my:test="1">' in fragment

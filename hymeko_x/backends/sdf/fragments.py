@@ -13,6 +13,7 @@ from hymeko_x.formats.sdf import fragments as words
 from hymeko_x.formats.sdf.values import NUMBER
 from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Body, Light, Loop, Role
+from hymeko_x.xml.namespaces import PREFIX, with_declared
 from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.printing import Tag, markup, put_back, ready
 from hymeko_x.xml.text import escaped
@@ -36,7 +37,9 @@ def fragments_of(mechanism: Mechanism) -> list[str]:
     joints = [(view.id, list(_of_joint(view.id, sheet))) for view in mechanism.joints.values() if not sheet.is_implied(view)]
     found = [_fragment({"reference": key.name}, children) for key, children in (*bodies, *joints) if children]
     found += [_fragment({}, [child]) for child in _of_model(sheet)]
-    return found + [extra.text for extra in sheet.extras(ROOT) if extra.path in _MODEL_PATHS and extra.text.startswith(f"<{words.BESIDE}")]
+    found += [extra.text for extra in sheet.extras(ROOT) if extra.path in _MODEL_PATHS and extra.text.startswith(f"<{words.BESIDE}")]
+    declared = {extra.path[1:]: extra.text for extra in sheet.extras(ROOT) if extra.path.startswith(f"@{PREFIX}")}
+    return [with_declared(text, declared, again=True) for text in found]
 
 
 def _fragment(attributes: dict[str, str], children: Sequence[Tag | str]) -> str:
