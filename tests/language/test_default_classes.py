@@ -76,7 +76,7 @@ def test_a_default_class_is_said_once() -> None:
     assert CLASSES in text
     assert "mjcf {\n    default" not in text
     for line in (
-        "@hip : leg { + trunk - thigh limit [-1 1] }",
+        "@hip : leg { + trunk - thigh limit [-1rad 1rad] }",
         "@knee : knee { + thigh - calf }",
         "thigh { shape : foot {} }",
         "shape : foot { at [0.125 0 -0.213] name=heel }",

@@ -122,7 +122,8 @@ def test_urdfdom_writes_it_anew(tmp_path: Path) -> None:
     found = [str(each) for each in hx.diff(source, home, Tolerance(1e-5, 1e-5)) if each.field != "name"]
     colour = "shape 'torso/collision' rgba: [0.1 0.2 0.3 1] -> none"
     axis = """joint 'torso' urdf content: added <axis xyz="0 0 0"/>"""
-    assert found == [colour, axis]  # it has no colours of collision shapes, and writes an axis for every joint
+    texture = "material 'skin' urdf content: added <texture/>"
+    assert found == [colour, texture, axis]  # it has no colours of collision shapes; every material gets a texture, every joint an axis
     assert [row.code.id for row in report] == ["HX112"]
 
 

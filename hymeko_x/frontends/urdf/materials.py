@@ -95,8 +95,8 @@ def _read_appearance(node: Node, builder: UrdfBuilder) -> Appearance:
     image = node.take_child("texture")
     if image is not None:
         texture = image.take("filename")
-        if not texture and image.attributes:
-            node.leave(image)  # without any, it is what urdfdom writes of a material without a texture
+        if not texture:
+            node.leave(image)
     if rgba is None:
         return None, texture or None
     r, g, b, a = rgba
