@@ -36,11 +36,23 @@ def rotation_from_quat(quats: Array) -> Array:
 
 
 def quat_from_rotation(rotation: Array) -> Array:
-    """The unit quaternion (w, x, y, z), w >= 0, of each rotation (3, 3) or (n, 3, 3)."""
-    from scipy.spatial.transform import Rotation
+    """The unit quaternion (w, x, y, z), w >= 0, of each rotation (3, 3) or (n, 3, 3).
 
-    quats: Array = Rotation.from_matrix(rotation).as_quat(canonical=True)[..., [3, 0, 1, 2]]
-    return quats
+    The largest column of 4 q q^T, which a rotation gives without a root (Shepperd 1978). scipy's would take a third of a second to load.
+    """
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = (np.moveaxis(row, -1, 0) for row in np.moveaxis(rotation, -2, 0))
+    products = np.array(
+        [
+            [1 + xx + yy + zz, zy - yz, xz - zx, yx - xy],
+            [zy - yz, 1 + xx - yy - zz, xy + yx, xz + zx],
+            [xz - zx, xy + yx, 1 - xx + yy - zz, yz + zy],
+            [yx - xy, xz + zx, yz + zy, 1 - xx - yy + zz],
+        ]
+    )
+    largest = np.einsum("ii...->i...", products).argmax(axis=0)
+    quats: Array = np.moveaxis(np.take_along_axis(products, largest[None, None], axis=0)[0], 0, -1)
+    quats = quats / np.linalg.norm(quats, axis=-1, keepdims=True)
+    return np.where(quats[..., :1] < 0.0, -quats, quats)
 
 
 def rigid(rotation: Array, position: Array) -> Array:

@@ -11,8 +11,8 @@ from pxr import Usd, UsdGeom
 import hymeko_x as hx
 from hymeko_x import verify
 from hymeko_x.verify import meshes as surfaces
-from hymeko_x.verify.meshes import Meshes
-from hymeko_x.verify.model import MeshFile, Surface
+from hymeko_x.verify.meshes import Meshes, mesh_distance
+from hymeko_x.verify.model import MeshFile, Role, Shape, Surface
 
 TETRAHEDRON = """solid t
 facet normal 0 0 0
@@ -96,3 +96,21 @@ def test_faces_that_each_reader_splits_otherwise_are_the_same_mesh_and_a_moved_c
         (tmp_path / f"{name}.urdf").write_text(link.format(name))
     assert hx.verify(tmp_path / "a.urdf", tmp_path / "b.urdf").is_same
     assert [check.quantity for check in hx.verify(tmp_path / "a.urdf", tmp_path / "c.urdf").failed] == ["visual meshes"]
+
+
+def test_files_of_the_same_bytes_at_the_same_pose_are_the_same_mesh(tmp_path: Path) -> None:
+    def placed(path: Path, at: float = 0.0, scale: float = 1.0) -> list[Shape]:
+        pose = np.eye(4)
+        pose[0, 3] = at
+        return [Shape(kind="mesh", size=(), pose=pose, role=Role.BOTH, mesh=MeshFile(path.name, path, (scale, 1.0, 1.0)))]
+
+    own, copy, other = mesh(tmp_path / "a.stl", 1.0), mesh(tmp_path / "copy" / "b.stl", 1.0), mesh(tmp_path / "c.stl", 2.0)
+    meshes = Meshes()
+    assert meshes.are_placed_alike(placed(own), placed(copy))
+    assert not meshes.are_placed_alike(placed(own), placed(other))
+    assert not meshes.are_placed_alike(placed(own), placed(copy, at=1e-9))
+    assert not meshes.are_placed_alike(placed(own), placed(copy, scale=2.0))
+    assert not meshes.are_placed_alike(placed(own), placed(copy) * 2)
+    assert not meshes.are_placed_alike(placed(tmp_path / "lost.stl"), placed(tmp_path / "lost.stl"))
+    assert not Meshes(read=False).are_placed_alike(placed(own), placed(copy))
+    assert mesh_distance(placed(own), placed(copy, at=1e-3), meshes)[:2] == (pytest.approx(1e-3), "the points of the meshes")
