@@ -15,6 +15,8 @@ _PART = re.compile(
     re.DOTALL,
 )
 _ATTRIBUTE = re.compile(rf"([^\s=]+)\s*=\s*({_VALUE})")
+_TIDY_LINE = re.compile(r"( *)<(?:(/)[^\s>]+>|[^\s/>!?]+(?: [^\s=]+=\"[^\"]*\")*+(?:/>|>[^<\s][^<]*</[^\s>]+>|(>)))")
+"""A line with one tidy tag or one element with text: the indent, the sign of an end tag, and the end of a start tag."""
 _STEP = "  "
 
 
@@ -24,6 +26,8 @@ def laid_out(text: str, depth: int) -> str:
     Where it has several lines, each node in it has a line of its own, unless an element holds text beside elements; ``depth`` counts
     the elements around it.
     """
+    if _is_laid_out(text, depth):  # nearly always, and ten times as fast as doing it: 15 % of reading a robot with many fragments
+        return text
     parts = list(_PART.finditer(text))
     if "".join(part[0] for part in parts) != text:
         return text
@@ -32,6 +36,20 @@ def laid_out(text: str, depth: int) -> str:
     if inner is None:
         return "".join(map(_tidy, parts))
     return "".join(_lines(parts, inner, depth))
+
+
+def _is_laid_out(text: str, depth: int) -> bool:
+    """Whether each line is one tidy tag, or one element with text, at its depth."""
+    inner = 0
+    for number, line in enumerate(text.split("\n")):
+        found = _TIDY_LINE.fullmatch(line)
+        if found is None:
+            return False
+        inner -= found[2] is not None
+        if len(found[1]) != (len(_STEP) * (depth + inner) if number else 0):
+            return False
+        inner += found[3] is not None
+    return inner == 0
 
 
 def _tidy(part: re.Match[str]) -> str:
