@@ -9,9 +9,9 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from msgspec import Struct
-from msgspec.structs import replace
 
 from hymeko_x import formats
+from hymeko_x.compare.extras import essence_of
 from hymeko_x.compare.leaves import TURN, leaves_between, leaves_of
 from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Arc, Edge
@@ -240,27 +240,15 @@ def _extras(key: Id, a: tuple[Extra, ...], b: tuple[Extra, ...]) -> Iterator[Dif
         else:
             left.append(extra)
     places = {(extra.format, extra.path) for extra in left} & {(extra.format, extra.path) for extra in rest}
-    essences = [_essence(extra) if (extra.format, extra.path) in places else extra for extra in rest]
+    essences = [essence_of(extra) if (extra.format, extra.path) in places else extra for extra in rest]
     for extra in left:
-        if (extra.format, extra.path) in places and (essence := _essence(extra)) in essences:
+        if (extra.format, extra.path) in places and (essence := essence_of(extra)) in essences:
             place = essences.index(essence)
             del essences[place], rest[place]
         else:
             yield Difference(key, f"{extra.format} {extra.path or 'content'}", extra.text, None)
     for extra in rest:
         yield Difference(key, f"{extra.format} {extra.path or 'content'}", None, extra.text)
-
-
-def _essence(extra: Extra) -> Extra:
-    """An extra that is an XML element without its comments, the blanks between its elements and the order of its attributes."""
-    if not extra.text.startswith("<"):
-        return extra
-    from xml.etree.ElementTree import ParseError, canonicalize
-
-    try:
-        return replace(extra, text=canonicalize(extra.text, strip_text=True))
-    except ParseError:
-        return extra
 
 
 def _union(a: Iterable[Id], b: Iterable[Id]) -> list[Id]:

@@ -19,7 +19,7 @@ from hymeko_x.edits.conversion import Conversion, new_assets
 from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
 from hymeko_x.edits.unnamed import unnamed_bodies, with_same_numbers
 from hymeko_x.ir.names import rename
-from hymeko_x.ir.parts import Body, Mesh, Texture
+from hymeko_x.ir.parts import Body, Mesh, Shape, Texture
 from hymeko_x.residue.pairing import other_names
 from hymeko_x.rewrite import Options
 
@@ -140,7 +140,8 @@ def _round(original: Source, format: Format, conversion: Conversion, edited: Sou
     derived = (_is_inherited, _is_weight, _is_given_again)
     dropped = [edit for edit in every if (str(edit.element), edit.field) in gone and not any(test(edit) for test in derived)]
     texts = text_with_edits(original, format, before, after, report) if len(dropped) < len(every) else Texts({}, {})
-    return _Round(before, texts, beside, tuple(dropped), conversion.left())
+    lost = tuple(edit for edit in dropped if not _is_hidden_material(edit, after))
+    return _Round(before, texts, beside, lost, conversion.left())
 
 
 def _report_left(found: _Round, conversion: Conversion, original: Source, format: Format, report: Report, *, is_changed: bool) -> None:
@@ -231,6 +232,15 @@ def _is_weight(edit: Difference) -> bool:
 def _is_given_again(edit: Difference) -> bool:
     """Whether an edit gives a shape a name that it had not, as where one shape of that name has become several."""
     return edit.element.kind == "shape" and edit.field == "name" and edit.before in (None, "none")
+
+
+def _is_hidden_material(edit: Difference, after: Mechanism) -> bool:
+    """Whether an edit gives a shape a material without images that the shape's own colour hides, as a note of the writer reports."""
+    edge = after.graph.edges.get(edit.element)
+    if edge is None or not isinstance(edge.data, Shape) or edge.data.rgba is None or not (edit.after or "").startswith("~ material "):
+        return False
+    materials = [arc.target for arc in edge.arcs if arc.role == "material"]
+    return not any(found.edge.kind == "layer" for material in materials for found in after.graph.incidence.get(material, ()))
 
 
 def _is_inherited(edit: Difference) -> bool:

@@ -271,7 +271,12 @@ def families() -> tuple[Format, ...]:
 
 def native_format(mechanism: Mechanism) -> Format | None:
     """The format whose engine gives a mechanism more than its parts hold, if it came from there; see :attr:`Format.completes`."""
-    return next((format for format in FORMATS if format.completes and format.name == mechanism.source.format), None)
+    return completing_format(mechanism.source.format)
+
+
+def completing_format(name: str) -> Format | None:
+    """The format of this name if its engine gives a mechanism more than its parts hold, such as masses of bodies that have shapes alone."""
+    return next((format for format in FORMATS if format.completes and format.name == name), None)
 
 
 def mesh_reader(mechanism: Mechanism) -> MeshReader | None:

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from msgspec.structs import replace
 
-from hymeko_x import codes
+from hymeko_x import codes, formats
 from hymeko_x.compare.leaves import TURN, default_at, get, put
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Body, Drive, Mount, Plane, Sense, Shape
 from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.alike import holds, is_alike
+from hymeko_x.residue.arcs import with_edited_weights
 from hymeko_x.residue.landmarks import renamed_since
 from hymeko_x.residue.parts import GEOMETRY, broken, parts_of
 from hymeko_x.residue.realign import realign, with_new_names, with_old_names
@@ -126,6 +127,7 @@ class _Merge:
 
     def _changed(self, key: Id, part: P, changes: list[Change]) -> P:
         is_broken = key in self._broken
+        changes = [with_edited_weights(part, change) for change in changes]
         edited = [change for change in changes if (is_broken and change.path == GEOMETRY) or not self._still_holds(key, part, change)]
         if edited:
             self._note(key, f"was edited: {', '.join(dict.fromkeys(_path_text(change.path) for change in edited))} stays as it is now")
@@ -148,7 +150,8 @@ class _Merge:
             value = value[0]  # type: ignore[index]
         if not holds(value, change.there, default):
             return False
-        follows = change.path == ("inertial",) and change.value is None and isinstance(part, Body)
+        is_left_out = change.path == ("inertial",) and change.value is None and isinstance(part, Body)
+        follows = is_left_out and formats.completing_format(self.residue.source.format) is not None
         return not follows or self._has_its_shapes(key)
 
     def _has_its_shapes(self, body: Id) -> bool:

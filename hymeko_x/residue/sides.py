@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from hymeko_x.compare.extras import essence_of
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.residue import Run, Sides
@@ -189,7 +190,7 @@ def _restored_extras(residue: Residue, image: Mechanism, there: set[Id]) -> dict
     for key, found in image.extras.items():
         expected = foreign[key]
         for extra in found:
-            place = next((place for place, other in enumerate(expected[:_NEAR]) if is_same_extra(extra, other)), None)
+            place = _place_of(extra, expected[:_NEAR])
             if place is None:
                 extras.setdefault(key, []).append(extra)
             else:
@@ -197,3 +198,13 @@ def _restored_extras(residue: Residue, image: Mechanism, there: set[Id]) -> dict
     for key, extra in residue.sides.extras:
         extras.setdefault(key, []).append(extra)
     return {key: tuple(found) for key, found in extras.items() if key in there}
+
+
+def _place_of(extra: Extra, expected: Sequence[Extra]) -> int | None:
+    """Where an extra stands among these, with its text or with another layout and other comments, which macros drop; None for nowhere."""
+    place = next((place for place, other in enumerate(expected) if is_same_extra(extra, other)), None)
+    if place is not None or not expected:
+        return place
+    essence = essence_of(extra)
+    alike = (place for place, other in enumerate(expected) if other.path == extra.path and essence_of(other) == essence)
+    return next(alike, None)

@@ -1,0 +1,93 @@
+"""What stands beside an edit stays as it is in the original: colours, missing inertials, comments."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import hymeko_x as hx
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.residue.delta import residue_of
+from hymeko_x.residue.merge import restore
+
+LAMP = """<robot name="lamp">
+  <link name="foot">
+    <visual>
+      <geometry><box size="0.1 0.1 0.02"/></geometry>
+      <material name="grey"><color rgba="0.65 0.65 0.75 1"/></material>
+    </visual>
+    <collision>
+      <geometry><box size="0.1 0.1 0.02"/></geometry>
+    </collision>
+  </link>
+  <!-- the sensor -->
+  <gazebo reference="foot">
+    <sensor name="imu" type="imu">
+      <update_rate>100</update_rate>
+      <!-- from the
+           data sheet -->
+      <always_on>1</always_on>
+    </sensor>
+  </gazebo>
+</robot>
+"""
+
+
+def updated(there: Path, change: tuple[str, str]) -> tuple[str, list[str]]:
+    """The lamp's text after a change in another format, and the warnings."""
+    original = there.with_name("lamp.urdf")
+    original.write_text(LAMP)
+    hx.convert(original, there)
+    text, number = re.subn(*change, there.read_text(), count=1)
+    assert number == 1
+    there.write_text(text)
+    report = hx.update(original, there).report
+    return original.read_text(), [str(row) for row in report if row.code.id == "HX118"]
+
+
+COLOUR = '<color rgba="1 0 0 1"/>'
+PAINT = f'<material name="">\n        {COLOUR}\n      </material>\n'
+ORIGIN = '<origin xyz="0 0 0.5" rpy="0 0 0"/>'
+
+
+@pytest.mark.unread("HX101", "HX105", "HX201", "HX204")
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("lamp.sdf", ('(<visual name="visual">)', r"\1<pose>0 0 0.5 0 0 0</pose>")),
+        ("lamp.usda", (r'(?s)(Cube "visual".*?xformOp:translate = )\(0, 0, 0\)', r"\1(0, 0, 0.5)")),
+        ("lamp.xml", ('material="grey"', 'material="grey" pos="0 0 0.5"')),
+    ],
+)
+def test_a_shape_that_moves_keeps_its_colour(name: str, change: tuple[str, str], tmp_path: Path) -> None:
+    text, missing = updated(tmp_path / name, change)
+    assert missing == []
+    assert text == LAMP.replace("<visual>\n", f"<visual>\n      {ORIGIN}\n")
+
+
+@pytest.mark.unread("HX101", "HX105", "HX201", "HX204")
+def test_a_link_without_inertial_has_none_when_its_shape_is_painted(tmp_path: Path) -> None:
+    text, missing = updated(
+        tmp_path / "lamp.usda", (r'(?s)(Cube "collision".*?double size = 1\n)', r"\1color3f[] primvars:displayColor = [(1, 0, 0)]\n")
+    )
+    assert missing == []
+    assert text == LAMP.replace("    </collision>", f"      {PAINT}    </collision>")
+
+
+@pytest.mark.unread("HX101", "HX105", "HX201", "HX204")
+def test_a_colour_in_place_of_a_material_is_no_edit_that_is_lost(tmp_path: Path) -> None:
+    text, missing = updated(tmp_path / "lamp.xml", ('material="grey"', 'material="grey" rgba="1 0 0 1"'))
+    assert missing == []
+    assert text == LAMP.replace(
+        '<material name="grey"><color rgba="0.65 0.65 0.75 1"/></material>', f'<material name="">{COLOUR}</material>'
+    )
+
+
+def test_a_fragment_that_lost_more_comments_is_the_same_fragment() -> None:
+    one, two = LAMP.replace("<update_rate>", "<!-- fast --><update_rate>"), LAMP.replace("<!-- from the\n           data sheet -->\n", "")
+    source, image, edited = (hx.loads(text, "urdf").mechanism for text in (one, LAMP, two))
+    assert len({robot.extras[ROOT] for robot in (source, image, edited)}) == 3
+    assert restore(edited, residue_of(source, image), Report()).mechanism.extras == source.extras
