@@ -60,6 +60,10 @@ class Hypergraph(Struct, Generic[K, V, E, W], frozen=True, dict=True):
         force_setattr(self, "vertices", MappingProxyType(dict(self.vertices)))
         force_setattr(self, "edges", MappingProxyType(dict(self.edges)))
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """What makes an equal graph, in another process too: a view of a mapping cannot be pickled."""
+        return type(self), (dict(self.vertices), dict(self.edges))
+
     def __eq__(self, other: object) -> bool:
         """Same vertices and same edges, in whatever order they were given."""
         if not isinstance(other, Hypergraph):

@@ -7,6 +7,7 @@ the page is broken between items, and then inside of blocks.
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes
@@ -56,6 +57,7 @@ _COMMENTS = frozenset({"LINE_COMMENT", "BLOCK_COMMENT"})
 _LISTS = frozenset({"NUMBERS", "MATRIX"})
 _FALLIBLE = frozenset({"STRING", "NAME", *_LISTS})
 """Tokens that may have no value."""
+_STATEMENT = "STATEMENT"
 
 
 class Token(NamedTuple):
@@ -108,17 +110,15 @@ def _plain(token: Token) -> tuple[str, str]:
 
 
 class _Collector(dict[str, "Convert"]):
-    """Collects every token that the machine reads, with its place, and the places where items begin."""
+    """Collects every token and every whole statement that the machine reads, with its place, and the places where other items begin."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self) -> None:
         super().__init__({kind: self._reader(kind) for kind in TERMINALS} | dict.fromkeys(machine().statements, self._statement))
         self.found: list[tuple[str, str, int]] = []
         self.starts: set[int] = set()
-        self._text = text
 
     def _statement(self, word: str, offset: int) -> None:
-        self.starts.add(offset)
-        self.found += machine().parts(self._text, offset, offset + len(word))
+        self.found.append((_STATEMENT, word, offset))
 
     def get(self, kind: str, default: object = None) -> Convert:
         return super().get(kind) or self._reader(kind)
@@ -133,7 +133,7 @@ class _Collector(dict[str, "Convert"]):
 
 def _tokens(text: str) -> list[Token]:
     """The tokens of a text, with the comments between them. Raises: ParseError, Malformed."""
-    collector = _Collector(text)
+    collector = _Collector()
 
     def item(parts: list[object], offset: int) -> None:
         collector.starts.add(offset)
@@ -151,14 +151,34 @@ def _tokens(text: str) -> list[Token]:
             comments, gap = _comments(gap)
             tokens += comments
         breaks = gap.count("\n")
-        if kind in _FALLIBLE:
-            TERMINALS[kind](word, start)
-        if kind in _LISTS:
-            tokens += _list_tokens(word, breaks, begins_item=start in collector.starts)
+        if kind == _STATEMENT:
+            tokens += _statement_tokens(word, breaks)
         elif kind != "$END":
-            tokens.append(Token(kind, word, breaks, start in collector.starts))
+            tokens += _item_tokens(kind, word, start, breaks, begins_item=start in collector.starts)
         end = start + len(word)
     return tokens
+
+
+@lru_cache(maxsize=1 << 13)
+def _statement_tokens(statement: str, breaks: int) -> tuple[Token, ...]:
+    """The tokens of a statement, with the line breaks before it. Most were in the version that was formatted before."""
+    tokens: list[Token] = []
+    end = 0
+    for kind, word, start in machine().parts(statement, 0, len(statement)):
+        before = statement.count("\n", end, start) if start else breaks
+        tokens += _item_tokens(kind, word, start, before, begins_item=not start)
+        end = start + len(word)
+    return tuple(tokens)
+
+
+def _item_tokens(kind: str, word: str, start: int, breaks: int, *, begins_item: bool) -> Iterator[Token]:
+    """A token, or the tokens of a list of numbers. Raises: Malformed for one that has no value."""
+    if kind in _FALLIBLE:
+        TERMINALS[kind](word, start)
+    if kind in _LISTS:
+        yield from _list_tokens(word, breaks, begins_item=begins_item)
+    else:
+        yield Token(kind, word, breaks, begins_item)
 
 
 def _comments(gap: str) -> tuple[list[Token], str]:

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import re
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote, urlparse
 
 from msgspec import Struct, field
 
-from hymeko_x import codes, formats, pipeline
-from hymeko_x.assets.resolve import DiskFiles
-from hymeko_x.diagnostics import Diagnostic, Origin, Refusal, Report, Severity
+from hymeko_x import formats
+from hymeko_x.diagnostics import Diagnostic, Severity
+from hymeko_x.server.reader import Reading, read
 from hymeko_x.server.text import Definition, Places, definitions, unquoted
-from hymeko_x.source import Source
-from hymeko_x.validation import validate
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
 
@@ -67,25 +66,13 @@ def path_of(uri: str) -> str:
     return unquote(urlparse(uri).path) if uri.startswith("file:") else uri
 
 
-def analyse(uri: str, text: str, before: Analysis | None) -> Analysis:
-    """A document read anew; where it cannot be, blocks and robot are those of the version before."""
-    path, report = path_of(uri), Report()
-    found = Analysis(path, text, Places(text), None)
-    if before is not None:
-        found.robot = before.robot
-    try:
-        data = text.encode("utf-8", "surrogatepass")
-        found.format = formats.of_input(path, data)
-        source = Source(path, data, DiskFiles(Path(path).parent))
-        found.robot = pipeline.read_anyway(source, found.format, report)
-        if not found.is_text:
-            validate(found.robot, source.files, report)
-    except Refusal as refusal:
-        report.extend(refusal.diagnostics)
-    except RecursionError:
-        report.error(codes.TOO_LARGE, "the text is nested too deep to be looked at", Origin(path))
-    found.diagnostics = list(report)
-    return found
+def analyse(uri: str, text: str, before: Analysis | None, read: Callable[[str, str], Reading] = read) -> Analysis:
+    """A document read anew; where it cannot be, its robot is that of the version before."""
+    path = path_of(uri)
+    found = read(path, text)
+    row = None if found.format is None else formats.by_name(found.format)
+    robot = before.robot if found.robot is None and before is not None else found.robot
+    return Analysis(path, text, Places(text), row, found.diagnostics, robot)
 
 
 def unread(text: str, before: Analysis) -> Analysis:

@@ -13,6 +13,7 @@ from pygls.lsp.server import LanguageServer
 
 from hymeko_x.server import answers
 from hymeko_x.server.analysis import SEVERITIES, Analysis, analyse, path_of, unread
+from hymeko_x.server.reader import Reader
 from hymeko_x.server.renaming import rename_element
 from hymeko_x.server.workspace import Workspace
 from hymeko_x.version import __version__
@@ -20,8 +21,6 @@ from hymeko_x.version import __version__
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Diagnostic
 
-_MOMENT = 0.02
-"""How long nothing is typed, in s, before a text is read: what an editor asks with a keystroke is answered before."""
 _SUGGESTION = re.compile(r"did you mean ([^?]+)\?")
 
 
@@ -31,8 +30,9 @@ class _Server(LanguageServer):
     def __init__(self) -> None:
         super().__init__("hymeko-x", __version__)
         self.known: dict[str, Analysis] = {}
-        self._waiting: dict[str, asyncio.TimerHandle | asyncio.Future[Analysis]] = {}
-        self._reader = ThreadPoolExecutor(1, "reader")
+        self.reader = Reader()
+        self._waiting: dict[str, asyncio.Future[Analysis]] = {}
+        self._thread = ThreadPoolExecutor(1, "reader")
 
     def document(self, uri: str) -> Analysis:
         """A document in its latest version, with the robot of the last version that was read."""
@@ -53,23 +53,18 @@ class _Server(LanguageServer):
         """The open texts, each in its latest version, and those on the disk."""
         return Workspace({uri: self.document(uri) for uri in [*self.workspace.text_documents]})
 
-    def show_soon(self, uri: str) -> None:
-        """Send the diagnostics of a document as soon as nothing was typed for a moment."""
-        self.forget(uri)
-        self._waiting[uri] = asyncio.get_running_loop().call_later(_MOMENT, self.show, uri)
-
     def forget(self, uri: str) -> None:
         """Read a document no more that waits to be read."""
         if uri in self._waiting:
             self._waiting.pop(uri).cancel()
 
     def show(self, uri: str) -> None:
-        """Read a document, and send its diagnostics. Questions are answered while it is read."""
+        """Read a document, and send its diagnostics. Meanwhile questions are answered; of waiting versions only the last is read."""
         self.forget(uri)
         if uri not in self.workspace.text_documents:
             return
         text = self.workspace.get_text_document(uri).source
-        reading = asyncio.get_running_loop().run_in_executor(self._reader, analyse, uri, text, self.known.get(uri))
+        reading = asyncio.get_running_loop().run_in_executor(self._thread, analyse, uri, text, self.known.get(uri), self.reader.read)
         reading.add_done_callback(lambda found: None if found.cancelled() else self._show(uri, found.result()))
         self._waiting[uri] = reading
 
@@ -122,7 +117,7 @@ def make_server() -> LanguageServer:
 
     @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
     def changed(given: types.DidChangeTextDocumentParams) -> None:
-        server.show_soon(given.text_document.uri)
+        server.show(given.text_document.uri)
 
     @server.feature(types.TEXT_DOCUMENT_DID_SAVE)
     def saved(given: types.DidSaveTextDocumentParams) -> None:
@@ -134,6 +129,10 @@ def make_server() -> LanguageServer:
         server.forget(given.text_document.uri)
         server.known.pop(given.text_document.uri, None)
         server.text_document_publish_diagnostics(types.PublishDiagnosticsParams(given.text_document.uri, []))
+
+    @server.feature(types.SHUTDOWN)
+    def ending(given: None) -> None:
+        server.reader.end()
 
     _add_answers_at_places(server)
     _add_answers_about_texts(server)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import mujoco
 import numpy as np
 import pytest
@@ -109,6 +111,13 @@ def test_a_robot_that_was_loaded_has_names_and_a_short_text() -> None:
     assert robot.joints["close"].child.name == "finger"
     assert len(repr(robot).splitlines()) == 1
     assert "finger" in str(robot)
+
+
+def test_a_robot_is_the_same_in_another_process() -> None:
+    robot = hx.loads(hx.dumps(claw(), "urdf"), "urdf")
+    again = pickle.loads(pickle.dumps(robot))
+    assert again == robot
+    assert hx.dumps(again, "urdf") == hx.dumps(robot, "urdf")
 
 
 def test_a_robot_does_not_change() -> None:
