@@ -13,7 +13,7 @@ from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import relevant
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
-from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_numbers
+from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_assets, with_same_numbers
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
@@ -98,7 +98,7 @@ class Conversion:
         self._used = guess
         residue = residue_of(mechanism, guess.image)
         self._homes = homes = dict(residue.alignment.names)
-        self.edited = with_same_numbers(self._read, guess.image, self._unnamed_bodies())
+        self.edited = with_same_assets(with_same_numbers(self._read, guess.image, self._unnamed_bodies()), guess.image)
         if self._asked is None:
             self._asked = frozenset(map(_aim, diff(guess.image, self.edited, TOLERANCE)))
         names = self._renames(guess.image)

@@ -86,3 +86,26 @@ def _content(robot: Mechanism, body: Id) -> object:
     shapes = [essence_of(robot.graph, robot.graph.edges[shape.id]) for shape in robot.shapes.get(body, ())]
     joint = [(dof.kind, rounded(dof.axis)) for dof in view.joint.dofs]
     return rounded(view.parent_pose), rounded(view.child_pose), tuple(joint), rounded(robot.vertex(body, Body)), tuple(shapes)
+
+
+def with_same_assets(edited: Mechanism, image: Mechanism) -> Mechanism:
+    """The edited robot, in which meshes and images whose id is that of another one in the image have the ids of the same ones there.
+
+    Without one shape, a stage without names of meshes counts them otherwise.
+    """
+    mine, theirs = dict(edited.assets()), dict(image.assets())
+    if not any(key in theirs and theirs[key] != part for key, part in mine.items()):
+        return edited
+    waiting: dict[object, list[Id]] = defaultdict(list)
+    for key in reversed([key for key, part in theirs.items() if mine.get(key) != part]):
+        waiting[theirs[key]].append(key)
+    doubtful = {key: part for key, part in mine.items() if key in theirs and theirs[key] != part}
+    names = {key: same.pop() for key, part in doubtful.items() if (same := waiting.get(part))}
+    return rename(edited, names | _made_way(edited, names))
+
+
+def _made_way(robot: Mechanism, names: dict[Id, Id]) -> dict[Id, Id]:
+    """Free ids for elements whose own ids others get."""
+    there = {*robot.graph.vertices, *robot.graph.edges}
+    free = Names((*there, *names.values()))
+    return {key: free.take(*key) for key in sorted(set(names.values()) & there - names.keys())}

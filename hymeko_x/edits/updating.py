@@ -135,6 +135,7 @@ def _round(original: Source, format: Format, conversion: Conversion, edited: Sou
     after, beside = _with_new_assets(before, conversion.edited_mechanism(before, original), edited)
     after = _without_unused(before, _with_imported_names(before, after, imported(original, format, before)))
     every = diff(before, after, TOLERANCE)
+    after = _without_rounding(before, after, {edit.element for edit in every})
     gone = _dropped(every, after, original, format)
     after = _without_inertials(before, after, {element for element, field in gone if field.partition(".")[0] == "inertial"})
     derived = (_is_inherited, _is_weight, _is_given_again)
@@ -160,6 +161,17 @@ def _report_left(found: _Round, conversion: Conversion, original: Source, format
     for name in dict.fromkeys([*found.left.made_names, *(conversion.lost_names() if is_changed else ())]):
         hint = f"{format.name} has no name for it there"
         report.note(codes.EDIT_DROPPED, f"the edit did not arrive: {name}", Origin(original.name), hint=hint)
+
+
+def _without_rounding(before: Mechanism, after: Mechanism, edited: Set[Id]) -> Mechanism:
+    """The edited robot, in which elements without an edit have the numbers that they had before, and not those that rounding left."""
+    vertices, edges = before.graph.vertices, before.graph.edges
+    return after.replace(
+        vertices={
+            key: vertices[key] for key, part in after.graph.vertices.items() if key not in edited and vertices.get(key, part) != part
+        },
+        edges={key: edges[key] for key, edge in after.graph.edges.items() if key not in edited and edges.get(key, edge) != edge},
+    )
 
 
 def _without_inertials(before: Mechanism, after: Mechanism, bodies: Set[str]) -> Mechanism:

@@ -25,6 +25,8 @@ _ROUNDED = 6e-6
 """By how much rounding changes a number at most, as a part of it."""
 _TURNED = 1e-5
 """The same for a quaternion: of three angles that are rounded, each turns it by half of its error."""
+_NOISE = 1e-12
+"""In m, and of a direction: less than this is left of zero where poses are composed and taken apart again."""
 _WHOLES = frozenset({4, 6})
 """Lengths of quaternions and tensors, which programs compute anew from axes and angles: only their largest number counts."""
 
@@ -68,6 +70,8 @@ def _are_alike(now: tuple[object, ...], then: tuple[object, ...]) -> bool:
     if len(then) in _WHOLES and are_numbers(now) and are_numbers(then):
         room = (_TURNED if len(then) == len(IDENTITY.quat) else _ROUNDED) * max(map(abs, then))  # type: ignore[arg-type]
         return any(all(abs(sign * a - b) <= room for a, b in zip(now, then, strict=True)) for sign in _signs(then))  # type: ignore[operator]
+    if len(then) == len(IDENTITY.xyz) and are_numbers(now) and are_numbers(then):
+        return all(is_rounded(a, b) or abs(a - b) <= _NOISE for a, b in zip(now, then, strict=True))  # type: ignore[arg-type, operator]
     return all(map(is_alike, now, then))
 
 

@@ -6,6 +6,8 @@ import re
 from pathlib import Path
 
 import pytest
+import trimesh
+from pxr import Usd
 
 import hymeko_x as hx
 
@@ -65,3 +67,29 @@ def test_a_body_that_is_renamed_gets_the_name_and_no_other_one_does(tmp_path: Pa
     assert original.read_text() == named
     assert hx.update(original, there).edits == ()
     assert original.read_text() == named
+
+
+@pytest.mark.unread("HX101", "HX105", "HX201", "HX204")
+@pytest.mark.parametrize("gone", ["one", "two", "three"])
+def test_other_meshes_stay_when_the_shape_of_one_is_removed(gone: str, tmp_path: Path) -> None:
+    """A stage names its meshes after their shapes, by numbers in their order."""
+    links = []
+    for size, name in enumerate(("one", "two", "three"), start=1):
+        trimesh.creation.box((size, 1, 1)).export(tmp_path / f"{name}.stl")
+        links.append(f'<link name="{name}"><visual><geometry><mesh filename="{name}.stl"/></geometry></visual></link>\n')
+    joints = [f'<joint name="j{name}" type="fixed"><parent link="one"/><child link="{name}"/></joint>\n' for name in ("two", "three")]
+    text = f'<robot name="r">\n{"".join(links)}{"".join(joints)}</robot>\n'
+    original, there = tmp_path / "r.urdf", tmp_path / "r.usda"
+    original.write_text(text)
+    hx.convert(original, there)
+    stage = Usd.Stage.Open(str(there))
+    prim = next(prim for prim in stage.Traverse() if prim.GetName() == "visual" and prim.GetParent().GetName() == gone)
+    stage.RemovePrim(prim.GetPath())
+    stage.Save()
+    report = hx.update(original, there).report
+    assert [str(row) for row in report if row.code.id == "HX118"] == []
+    visual = f'<visual><geometry><mesh filename="{gone}.stl"/></geometry></visual>'
+    assert original.read_text() in (
+        text.replace(visual, ""),
+        text.replace(f'<link name="{gone}">{visual}</link>', f'<link name="{gone}"/>'),
+    )

@@ -86,6 +86,16 @@ def test_a_colour_in_place_of_a_material_is_no_edit_that_is_lost(tmp_path: Path)
     )
 
 
+@pytest.mark.unread("HX101", "HX105", "HX201", "HX204")
+def test_what_rounding_leaves_of_zero_is_no_edit(tmp_path: Path) -> None:
+    """Programs that compose poses and take them apart again write 3e-17 m for 0."""
+    scaled = r'(?s)(Cube "visual".*?xformOp:scale = )\(0.1, 0.1, 0.02\)'
+    moved = r'(.*?Cube "collision".*?xformOp:translate = )\(0, 0, 0\)'
+    text, missing = updated(tmp_path / "lamp.usda", (scaled + moved, r"\1(0.2, 0.2, 0.04)\2(2.7755575615628914e-17, 0, 0)"))
+    assert missing == []
+    assert text == LAMP.replace('"0.1 0.1 0.02"', '"0.2 0.2 0.04"', 1)
+
+
 def test_a_fragment_that_lost_more_comments_is_the_same_fragment() -> None:
     one, two = LAMP.replace("<update_rate>", "<!-- fast --><update_rate>"), LAMP.replace("<!-- from the\n           data sheet -->\n", "")
     source, image, edited = (hx.loads(text, "urdf").mechanism for text in (one, LAMP, two))
