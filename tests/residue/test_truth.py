@@ -168,3 +168,18 @@ def test_every_real_robot_is_the_same_after_a_second_conversion(
     robot: Path, target: str, base: Any, actuators: Any, tmp_path: Path
 ) -> None:
     assert_same_again(robot, target, base, actuators, tmp_path)
+
+
+HUMANOID = next(file for file in development_files("urdf") if file.path.endswith("g1_29dof_with_hand_rev_1_0.urdf"))
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("robot", [HUMANOID], ids=_id, indirect=True)
+def test_the_humanoid_of_the_demo_keeps_its_actuators_and_its_free_base(robot: Path, tmp_path: Path) -> None:
+    (tmp_path / "b").mkdir()
+    first, second = tmp_path / "g1.xml", tmp_path / "b" / "g1.xml"
+    hx.convert(robot, first, target="mujoco", base="free", actuators="position")
+    assert hx.convert(first, second).losses == ()
+    a, b = (mujoco.MjModel.from_xml_path(str(path)) for path in (first, second))
+    assert (a.nu, a.nq - a.nv, b.nu, b.nq - b.nv) == (43, 1, 43, 1)
+    assert differences(a, b) == []
