@@ -39,6 +39,21 @@ def open_second_parents(mechanism: Mechanism, context: Context) -> Mechanism:
     return mechanism.replace(edges=edges, without=[view.id for view in extra])
 
 
+def close_in_pairs(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A closure of more than two elements becomes closures of the first one with each of the others."""
+    joined = [(key, loop, arcs) for key, loop, arcs in mechanism.edges(Loop) if len(arcs) > 2]
+    if not joined:
+        return mechanism
+    names = names_in_use(mechanism)
+    edges: dict[Id, RobotEdge] = {}
+    for key, loop, (first, second, *others) in joined:
+        edges[key] = Edge(loop, (first, second))
+        edges |= {names.take("loop", key.name): Edge(loop, (first, other)) for other in others}
+        message = f"{key} joins {len(others) + 2} elements; it is written as {len(others) + 1} closures of the first with each other one"
+        context.report.note(codes.REWRITTEN, message, mechanism.origin(key), element=str(key))
+    return mechanism.replace(edges=edges)
+
+
 def close_by_points(mechanism: Mechanism, context: Context) -> Mechanism:
     """A loop that a joint closes becomes welds and points that stay together: a hinge is two points on its axis."""
     joints = [(key, loop, arcs) for key, loop, arcs in mechanism.edges(Loop) if loop.kind == "joint" and len(arcs) == 2]

@@ -30,7 +30,7 @@ from hymeko_x.rewrite.joints import (
     name_dofs_once,
     split_overfull_joints,
 )
-from hymeko_x.rewrite.loops import anchor_closures, close_by_points, open_second_parents
+from hymeko_x.rewrite.loops import anchor_closures, close_by_points, close_in_pairs, open_second_parents
 from hymeko_x.rewrite.names import make_names_usable, name_assets_once
 from hymeko_x.rewrite.roots import put_world_link_into_world, report_open_bases
 from hymeko_x.rewrite.shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
@@ -61,6 +61,7 @@ RULES: tuple[Rule, ...] = (
     make_names_usable,
     name_assets_once,
     open_second_parents,
+    close_in_pairs,
     close_by_points,
     anchor_closures,
     put_world_link_into_world,

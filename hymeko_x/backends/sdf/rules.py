@@ -25,6 +25,7 @@ from hymeko_x.rewrite.couplings import drop_inactive_couplings, make_couplings_s
 from hymeko_x.rewrite.efforts import limit_efforts_by_actuators
 from hymeko_x.rewrite.inertia import fill_tensors, give_every_body_mass, make_tensors_physical
 from hymeko_x.rewrite.joints import lower_inner_free_joints
+from hymeko_x.rewrite.loops import close_in_pairs
 from hymeko_x.rewrite.names import make_names_usable
 from hymeko_x.rewrite.roots import put_world_link_into_world
 from hymeko_x.rewrite.shapes import drop_engine_shapes, drop_unused_assets, make_sizes_positive, prefer_own_colours, split_shared_shapes
@@ -194,6 +195,7 @@ RULES: tuple[Rule, ...] = (
     unless_from_sdf(remove_refused_numbers),
     move_anchors_into_frames,
     chain_joints,
+    close_in_pairs,
     unless_from_sdf(close_loops_by_joints),
     drop_inactive_couplings,
     make_couplings_scalar,

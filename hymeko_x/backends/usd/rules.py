@@ -13,6 +13,7 @@ from hymeko_x.ir.parts import Contact, Loop
 from hymeko_x.rewrite.differentials import drive_by_differentials
 from hymeko_x.rewrite.fragments import mount_sensors_of_fragments
 from hymeko_x.rewrite.joints import expand_screws
+from hymeko_x.rewrite.loops import close_in_pairs
 from hymeko_x.rewrite.names import make_names_usable
 from hymeko_x.rewrite.shapes import drop_unused_assets
 from hymeko_x.rewrite.transmissions import drive_by_transmissions
@@ -58,6 +59,7 @@ RULES: tuple[Rule, ...] = (
     mount_sensors_of_fragments,
     make_names_usable,
     expand_screws,
+    close_in_pairs,
     drop_loops_without_bodies,
     drive_by_transmissions,
     drive_by_differentials,

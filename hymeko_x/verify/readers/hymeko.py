@@ -219,12 +219,15 @@ def _couplings(mechanism: Mechanism, dofs: Mapping[tuple[Id, str], int]) -> Iter
 
 
 def _loops(mechanism: Mechanism, numbers: Mapping[Id, int], frames: Placed) -> Iterator[m.Loop]:
+    """The closures; one of several bodies joins the first with each of the others, of which the second has its name."""
     for key, loop, arcs in mechanism.edges(parts.Loop):
         ends = [end for arc in arcs if (end := _end(arc, numbers, frames)) is not None]
         if not loop.active or len(ends) < 2:
             continue
         kind, words, along = _closure(loop)
-        yield m.Loop(kind, ends[0][0], ends[0][1] @ along, ends[1][0], ends[1][1] @ along, key.name, words)
+        (body, pose), *others = ends
+        for number, (other, place) in enumerate(others):
+            yield m.Loop(kind, body, pose @ along, other, place @ along, None if number else key.name, words)
 
 
 def _end(arc: RobotArc, numbers: Mapping[Id, int], frames: Placed) -> tuple[int, Array] | None:
