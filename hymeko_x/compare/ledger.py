@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from hymeko_x import formats
 from hymeko_x.compare.diff import Difference, Tolerance, diff
-from hymeko_x.compare.relevance import relevant
+from hymeko_x.compare.relevance import in_fragments, relevant
 from hymeko_x.compare.units import unit_of
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.notations import UNNAMED
@@ -29,7 +29,8 @@ LONGEST_VALUE = 120
 
 
 Fate = Literal["kept", "approximated", "dropped"]
-"""*Kept*: the output's residue holds it. *Approximated*: the output represents something else. *Dropped*: it represents nothing there."""
+"""*Kept*: the output's residue holds it, or a fragment that only some programs read. *Approximated*: the output represents something else.
+*Dropped*: it represents nothing there."""
 
 _ABSENT = ("none", "[]")
 """How a difference shows that a field has no value; a weight without a value is the identity."""
@@ -87,13 +88,14 @@ def losses_between(
     changed; ``leaves`` is in what their elements differ, if that is known; ``is_carried`` whether the file will carry what got lost.
     """
     tolerance = Tolerance(1e-12, format.precision, by_vector=True) if format.precision else TOLERANCE
-    kept = relevant(diff(mechanism, aligned, tolerance, leaves), mechanism, aligned, tolerance)
+    is_held = in_fragments(mechanism, aligned)
+    kept = relevant(diff(mechanism, aligned, tolerance, leaves), mechanism, aligned, tolerance, is_held)
     renamed = tuple(renamed)
     names = {difference.element: str(difference.after)[1:-1] for difference in renamed if difference.field == "name"}
     renamed = (difference for difference in renamed if not _is_number(difference, mechanism))
     found = (*renamed, *kept, *_notes_that_count(mechanism, aligned))
     lost = [difference for difference in found if not _is_boilerplate(difference, mechanism, format)]
-    return tuple([_loss(difference, mechanism, aligned, names, is_kept=is_carried) for difference in lost])
+    return tuple([_loss(difference, mechanism, aligned, names, is_kept=is_carried or is_held(difference)) for difference in lost])
 
 
 def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
@@ -122,7 +124,7 @@ def _is_boilerplate(difference: Difference, mechanism: Mechanism, format: Format
         return difference.before is None and difference.field != "" and difference.element not in mechanism.graph
     if difference.field in format.boilerplate:
         return True
-    return difference.before is None and difference.field.startswith(f"{format.family} ")
+    return difference.before is None and difference.field.startswith(f"{format.expands_to or format.family} ")
 
 
 def _loss(difference: Difference, mechanism: Mechanism, aligned: Mechanism, names: Mapping[Id, str], *, is_kept: bool) -> Loss:

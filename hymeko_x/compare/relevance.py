@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
@@ -28,22 +29,44 @@ _TURNING_FREELY = (DofKind.BALL, DofKind.FREE)
 _NO_AXES = (X, Z)
 """The axes of URDF and MJCF where none is given."""
 _WEIGHTS = ("mass", "density")
+ABSENT = ("none", "[]", "0")
+"""How a difference shows that a field has no value."""
 _NO_NAME = "none"
 """How a difference shows that there is no name; a name is shown in quotes."""
 
 
-def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Difference]:
+Judge = Callable[["Difference"], bool]
+
+
+def in_fragments(before: Mechanism, after: Mechanism) -> Judge:
+    """Whether a difference is in fragments of one of the robots, which only some programs read. They are read for the first difference."""
+    judges: list[Judge] = []
+
+    def is_held(difference: Difference) -> bool:
+        if not judges:
+            judges.extend(formats.loaded(row.held)(before, after) for row in formats.FORMATS if row.held is not None)
+        return any(judge(difference) for judge in judges)
+
+    return is_held
+
+
+def relevant(
+    found: Iterable[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance, is_held: Judge = lambda _: False
+) -> Iterator[Difference]:
     """The differences from ``before`` to ``after`` without those that are none of the robot.
 
     No loss is: another axis of a ball or a free joint, which has none; another mass or density of a shape without one, on the world or
     on a body whose mass and tensor are given; a centre of mass and a tensor that HyMeKo text leaves to the shapes; other frames of a joint
     that moves its body alike; an effort limit that is what the actuators of the source can exert; a frame that is
-    where the body of its name is; a pose that is a keyframe; a sensor or a camera in a fragment. What an author wrote counts, used or not.
+    where the body of its name is; a pose that is a keyframe; a sensor, a camera or a text that is held in a fragment, as ``is_held`` says.
+    What an author wrote counts, used or not.
     """
     alike: dict[Id, bool] = {}
     native = formats.native_format(before)
     efforts = actuator_efforts(before)
-    described = {*_links(before, after), *_keyframes(before, after, tolerance), *_in_fragments(before, after)}
+    described = {*_links(before, after), *_keyframes(before, after, tolerance)}
+    if native is None or native.held is None:
+        described |= {*_in_fragments(before, after)}
     weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
     for difference in found:
         key = difference.element
@@ -62,7 +85,14 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
                 alike[key] = _move_alike(before.graph.edges[key], after.graph.edges[key], tolerance)
             if alike[key] and not _is_idle_axis(before, difference):
                 continue
-        yield difference
+        if not is_held(difference) or _is_of_robot(difference):
+            yield difference
+
+
+def _is_of_robot(difference: Difference) -> bool:
+    """Whether a robot lacks what other programs than those that read fragments understand: a closure, a field of a joint or a shape."""
+    gone = difference.after is None or difference.after in ABSENT
+    return gone and difference.element.kind in ("loop", "joint", "shape") and " " not in difference.field
 
 
 def _is_described_otherwise(difference: Difference, before: Mechanism, after: Mechanism) -> bool:

@@ -208,6 +208,7 @@ SDF = Format(
     has_fragments=True,
     one_namespace=True,
     fragments="hymeko_x.backends.sdf.fragments:fragments_of",
+    held="hymeko_x.backends.sdf.held:held",
     fragment_sensors="hymeko_x.formats.sdf.fragments:sensor_names",
     fragment_mounts="hymeko_x.formats.sdf.mounted:mounted_in",
     fragment_of="hymeko_x.formats.sdf.mounted:fragment_of",

@@ -100,6 +100,8 @@ class Format(Struct, frozen=True):
 
     fragments: str | None = None
     """The function ``mechanism -> texts``: the elements in which other formats hold what only it represents of its robots."""
+    held: str | None = None
+    """The function ``(mechanism, image) -> difference -> bool``: whether it is in such elements of one of both."""
     fragment_sensors: str | None = None
     """The function ``texts -> names``: the sensors and cameras that such elements describe."""
     fragment_mounts: str | None = None

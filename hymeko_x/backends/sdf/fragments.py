@@ -105,7 +105,11 @@ def _of_joint(joint: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
     whole = _whole(joint, sheet)
     for word, (path, name) in words.OF_JOINT.items() if whole.children else ():
         yield from _shared(word, f"{path}/{name}", [whole])
-    if not sheet.mechanism.joints[joint].joint.dofs:
+    dofs = sheet.mechanism.joints[joint].joint.dofs
+    for word, name in words.OF_DOF.items() if len(dofs) == 1 else ():
+        if (value := getattr(dofs[0], name)) != 0.0:
+            yield _leaf(word, NUMBER.write(value))
+    if not dofs:
         yield _leaf(words.OBEYED[0], "true")
     for sensor in sheet.joint_sensors.get(joint, ()):
         yield joint_sensor_tag(sensor, sdf_words.split_scope(joint.name)[0], sheet)

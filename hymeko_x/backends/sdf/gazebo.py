@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import sys
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from xml.parsers.expat import ExpatError
 
 from msgspec.structs import replace
@@ -17,10 +17,10 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import fragments
-from hymeko_x.formats.sdf.values import NUMBER, BadText
+from hymeko_x.formats.sdf.values import COLOUR, NUMBER, BadText, Field
 from hymeko_x.ir.mechanism import ROOT, Extra, Id
 from hymeko_x.ir.names import free_name
-from hymeko_x.ir.parts import Role
+from hymeko_x.ir.parts import Joint, Role
 from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.printing import markup
 from hymeko_x.xml.text import escaped, unescaped
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from hymeko_x.rewrite.context import Context
     from hymeko_x.xml.tree import Node
 
+Fields = dict[tuple[Id, str], Any]
+"""Values by joint or shape, and the name of the field: one of the shape, or of the joint's only dof."""
 _START = f"<{fragments.TAG}"
 _IMU_NOISE = re.compile(r"(?<=<imu>)\s*(?:<!--.*?-->\s*)*(<noise>.*?</noise>)", re.DOTALL)
 _IMU_PARTS: Mapping[str, str] = MappingProxyType({"rate": "angular_velocity", "accel": "linear_acceleration"})
@@ -39,6 +41,9 @@ _PREFIX = re.compile(r"<([A-Za-z_][\w.-]*):|\s([A-Za-z_][\w.-]*):[\w.-]+=")
 _SENSOR_NAME = re.compile(r"<(?:sensor|projector)\b[^>]*?\sname=([\"'])(.*?)\1")
 _XMLNS = "@xmlns:"
 _LAST = sys.maxsize
+_FIELDS = {field.path: field for field in (Field("surface/friction/ode/mu", "friction", NUMBER), Field("material/diffuse", "rgba", COLOUR))}
+_FLAGS = ("0", "1", "false", "true")
+"""The words for a flag in SDF."""
 _MATERIALS = "file://media/materials/scripts/gazebo.material"
 
 
@@ -52,19 +57,30 @@ def obey_gazebo_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
     added: dict[Id, list[Extra]] = {}
     held = {(key, extra) for key, extras in mechanism.extras.items() for extra in extras if extra.format == words.FORMAT}
     names: dict[Id, set[str]] = {}
-    edges: dict[Id, RobotEdge] = {}
+    fields: Fields = {}
     for text in texts:
         try:
             node = parse_text(text)
         except ExpatError:
             continue
-        for key, found in _extras_of(node, mechanism, edges):
+        for key, found in extras_of(node, mechanism, fields):
             extra = _with_namespaces(found, declared, context)
             if extra is not None and (key, extra) not in held:
                 held.add((key, extra))
                 added.setdefault(key, []).append(_named_once(extra, key, names.setdefault(key, set()), context))
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), *found) for key, found in added.items()}}
-    return replace(mechanism, graph=mechanism.graph.replace(edges=edges) if edges else mechanism.graph, extras=extras)
+    return _with_fields(replace(mechanism, extras=extras), fields)
+
+
+def _with_fields(mechanism: Mechanism, fields: Fields) -> Mechanism:
+    """The mechanism with other values of its shapes, and of the dofs of its joints."""
+    edges: dict[Id, RobotEdge] = {}
+    for (key, name), value in fields.items():
+        edge = edges.get(key, mechanism.graph.edges[key])
+        data = edge.data
+        changed = Joint((replace(data.dofs[0], **{name: value}),)) if isinstance(data, Joint) else replace(data, **{name: value})
+        edges[key] = replace(edge, data=changed)
+    return mechanism.replace(edges=edges)
 
 
 def _with_namespaces(extra: Extra, declared: Mapping[str, str], context: Context) -> Extra | None:
@@ -95,7 +111,8 @@ def _named_once(extra: Extra, key: Id, taken: set[str], context: Context) -> Ext
     return replace(extra, text=extra.text[: found.start(2)] + name + extra.text[found.end(2) :])
 
 
-def _extras_of(node: Node, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> Iterator[tuple[Id, Extra]]:
+def extras_of(node: Node, mechanism: Mechanism, fields: Fields) -> Iterator[tuple[Id, Extra]]:
+    """What a <gazebo> element gives to elements of a robot, as extras of SDF; values of joints and shapes go into ``fields``."""
     reference = node.attributes.get("reference")
     body, joint = Id("body", reference or ""), Id("joint", reference or "")
     for child in node.children:
@@ -105,11 +122,9 @@ def _extras_of(node: Node, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> 
             if (child.tag in fragments.OF_MODEL or ":" in child.tag) and not _is_taken(child, mechanism):
                 yield ROOT, _at_end("model", markup(child))
         elif body in mechanism.graph.vertices:
-            yield from _of_link(child, body, mechanism, edges)
-        elif joint in mechanism.graph.edges and child.tag in fragments.OF_JOINT:
-            yield joint, _extra(*fragments.OF_JOINT[child.tag], child)
-        elif joint in mechanism.graph.edges and child.tag == "sensor":
-            yield joint, _at_end("", markup(child))
+            yield from _of_link(child, body, mechanism, fields)
+        elif joint in mechanism.graph.edges:
+            yield from _of_joint(child, joint, mechanism, fields)
 
 
 def _is_taken(child: Node, mechanism: Mechanism) -> bool:
@@ -118,28 +133,70 @@ def _is_taken(child: Node, mechanism: Mechanism) -> bool:
     return Id("body", name) in mechanism.graph.vertices or Id("joint", name) in mechanism.graph.edges
 
 
-def _of_link(child: Node, body: Id, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> Iterator[tuple[Id, Extra]]:
+def _of_joint(child: Node, key: Id, mechanism: Mechanism, fields: Fields) -> Iterator[tuple[Id, Extra]]:
+    if child.tag in fragments.OF_JOINT:
+        yield from _values(child, *fragments.OF_JOINT[child.tag], [key])
+    elif child.tag == "sensor":
+        yield key, _at_end("", markup(child))
+    elif child.tag in fragments.OF_DOF and (value := _number(child)) is not None:
+        name, joint = fragments.OF_DOF[child.tag], mechanism.graph.edges[key].data
+        if isinstance(joint, Joint) and len(joint.dofs) == 1 and (value >= 0.0 or name != "stiffness"):
+            fields[key, name] = value
+
+
+def _of_link(child: Node, body: Id, mechanism: Mechanism, fields: Fields) -> Iterator[tuple[Id, Extra]]:
     shapes = mechanism.shapes.get(body, ())
+    collisions, visuals = ([view.id for view in shapes if view.shape.role is role] for role in (Role.COLLISION, Role.VISUAL))
     if child.tag in fragments.OF_LINK:
-        yield body, _extra("", fragments.OF_LINK[child.tag], child)
-    elif child.tag == "turnGravityOff":
-        yield body, _at_end("", f"<gravity>{'false' if _text(child) in ('true', '1') else 'true'}</gravity>")
+        yield from _values(child, "", fragments.OF_LINK[child.tag], [body])
+    elif child.tag == fragments.TURN_GRAVITY_OFF:
+        yield body, _at_end("", f"<gravity>{'true' if _text(child).lower() in ('false', 'no', '0') else 'false'}</gravity>")
+    elif child.tag == fragments.DAMPING and _number(child) is not None:
+        yield body, _at_end("", "<velocity_decay><linear>{0}</linear><angular>{0}</angular></velocity_decay>".format(_text(child)))
     elif child.tag in fragments.IN_LINK:
         yield body, _at_end("", _IMU_NOISE.sub(_noise_by_axis, markup(child)))
     elif child.tag in fragments.OF_COLLISION:
-        yield from ((view.id, _extra(*fragments.OF_COLLISION[child.tag], child)) for view in shapes if view.shape.role is Role.COLLISION)
+        yield from _values(child, *fragments.OF_COLLISION[child.tag], collisions)
     elif child.tag == "material" and _text(child):
         script = f"<script><uri>{_MATERIALS}</uri><name>{escaped(_text(child))}</name></script>"
-        yield from ((view.id, _at_end("material", script)) for view in shapes if view.shape.role is Role.VISUAL)
+        yield from ((key, _at_end("material", script)) for key in visuals)
     elif child.tag == "mu1":
-        try:
-            friction = (NUMBER.read(_text(child)),)
-        except BadText:
-            return
-        for view in shapes:
-            edge = mechanism.graph.edges[view.id]
-            if view.shape.role is Role.COLLISION:
-                edges[view.id] = replace(edge, data=replace(view.shape, friction=friction))
+        _set(_FIELDS["surface/friction/ode/mu"], child, collisions, fields)
+    elif child.tag in words.ROLES:
+        yield from _of_shapes(child, visuals if words.ROLES[child.tag] is Role.VISUAL else collisions, fields)
+
+
+def _of_shapes(child: Node, keys: list[Id], fields: Fields) -> Iterator[tuple[Id, Extra]]:
+    """What a fragment gives to all visuals or all collisions of a link, in the words of SDF. The ambient colour is as the diffuse one."""
+    rest = [("", inner) for inner in child.children if inner.is_element]
+    while rest:
+        path, node = rest.pop()
+        place = f"{path}/{node.tag}".lstrip("/")
+        if place in _FIELDS:
+            _set(_FIELDS[place], node, keys, fields)
+        elif inner := [(place, inner) for inner in node.children if inner.is_element and not node.attributes]:
+            rest += inner
+        elif place != "material/ambient":
+            yield from ((key, _at_end(path, markup(node))) for key in keys)
+
+
+def _set(field: Field, node: Node, keys: list[Id], fields: Fields) -> None:
+    """Give a value to these shapes, if it is one."""
+    try:
+        value = field.codec.read(_text(node))
+    except BadText:
+        return
+    fields.update({(key, field.name): value if field.name == "rgba" else (value,) for key in keys})
+
+
+def _values(child: Node, path: str, name: str, keys: list[Id]) -> Iterator[tuple[Id, Extra]]:
+    """The value of a fragment at a path of these elements; none where it is no value of its kind."""
+    text = _text(child)
+    if child.tag in fragments.FLAGS:
+        text = text if text in _FLAGS else _FLAGS[3 if text.lower() in ("true", "yes") else 2]
+    elif not text or (child.tag not in fragments.VECTORS and _number(child) is None):
+        return
+    yield from ((key, _at_end(path, f"<{name}>{escaped(text)}</{name}>")) for key in keys)
 
 
 def _noise_by_axis(found: re.Match[str]) -> str:
@@ -156,12 +213,17 @@ def _noise_by_axis(found: re.Match[str]) -> str:
     return "".join(texts)
 
 
+def _number(node: Node) -> float | None:
+    """The number that a fragment gives; None for what is none."""
+    try:
+        return float(NUMBER.read(_text(node)))
+    except BadText:
+        return None
+
+
 def _text(node: Node) -> str:
-    return " ".join((node.text or "").split())
-
-
-def _extra(path: str, tag: str, child: Node) -> Extra:
-    return _at_end(path, f"<{tag}>{escaped(_text(child))}</{tag}>")
+    """What a fragment gives: its attribute ``value``, as in older files, or else its text."""
+    return " ".join((node.attributes.get("value") or node.text or "").split())
 
 
 def _at_end(path: str, text: str) -> Extra:

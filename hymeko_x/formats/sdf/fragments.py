@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 TAG = "gazebo"
 
 OF_LINK: Mapping[str, str] = MappingProxyType({"selfCollide": "self_collide", "gravity": "gravity"})
+TURN_GRAVITY_OFF = "turnGravityOff"
+DAMPING = "dampingFactor"
+"""Both velocities of a link decay by it."""
 IN_LINK = frozenset(
     {
         *("sensor", "projector", "battery", "audio_sink", "audio_source", "particle_emitter", "light"),
@@ -31,6 +34,7 @@ OF_COLLISION: Mapping[str, tuple[str, str]] = MappingProxyType(
         "minDepth": ("surface/contact/ode", "min_depth"),
         "maxVel": ("surface/contact/ode", "max_vel"),
         "maxContacts": ("", "max_contacts"),
+        "laserRetro": ("", "laser_retro"),
     }
 )
 OF_JOINT: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -39,9 +43,17 @@ OF_JOINT: Mapping[str, tuple[str, str]] = MappingProxyType(
         "implicitSpringDamper": ("physics/ode", "implicit_spring_damper"),
         "cfmDamping": ("physics/ode", "cfm_damping"),
         "fudgeFactor": ("physics/ode", "fudge_factor"),
+        "stopCfm": ("physics/ode/limit", "cfm"),
+        "stopErp": ("physics/ode/limit", "erp"),
     }
 )
 """The path and the name in SDF of what a fragment calls otherwise."""
+OF_DOF: Mapping[str, str] = MappingProxyType({"springStiffness": "stiffness", "springReference": "spring_ref"})
+"""The field of a joint's only dof."""
+FLAGS = frozenset(("selfCollide", "gravity", TURN_GRAVITY_OFF, "provideFeedback", "implicitSpringDamper", "cfmDamping"))
+"""What is true or false: true by the words ``true``, ``yes`` and ``1``, in any case."""
+VECTORS = frozenset(("fdir1",))
+"""What is more than one number."""
 OF_MODEL = frozenset(("static", "self_collide", "allow_auto_disable", "enable_wind", "plugin", "gripper", "frame", "link", "joint"))
 """The children of <model>; other elements of a fragment without a link are those of older programs, and SDF has none of them."""
 OBEYED = ("preserveFixedJoint", "disableFixedJointLumping")
