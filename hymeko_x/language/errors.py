@@ -30,6 +30,8 @@ _CLOSERS = {"RBRACE": "{", "RSQB": "[", "RPAR": "("}
 _INDENT = re.compile(r"[ \t]*")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _DIGIT_NAME = re.compile(r"\d+[^\W\d]\w*")
+_NAME_AND_PATH = re.compile(r"(?<![\w:.`])(?<![:@] )([^\W\d]\w*)\s+([^\W\d]\w*(?:\.(?:[^\W\d]\w*|`[^`\n]*`))+)\s*\Z")
+"""A name and a path behind it, as in ``at left.flange``."""
 _BEGINNINGS = {
     "<": "this looks like XML: --from urdf, --from xacro or --from mjcf reads it",
     "{": "a text begins with a name: robot { ... }",
@@ -119,6 +121,9 @@ def _token_hint(error: UnexpectedToken, text: str, at_end: bool) -> str:
         return f"the '{bracket}' in line {line} is still open"
     if token in _PAIRS and unopened == error.token.start_pos:
         return f"there is no '{_PAIRS[token]}' for this '{token}'"
+    path = _NAME_AND_PATH.search(text, 0, offset)
+    if path is not None:
+        return f"a value that is a name stands behind '=': {path[1]}={path[2]}"
     return _unclosed_before(text, offset) or _expectation_hint(error.accepts or error.expected, token, text[:offset].rstrip()[-1:])
 
 

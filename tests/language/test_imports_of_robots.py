@@ -57,6 +57,13 @@ def test_an_instance_on_a_frame_is_what_attach_makes(here: Path) -> None:
         assert np.allclose(found.matrix(), known.matrix(), atol=1e-12)
 
 
+def test_the_place_of_an_instance_may_be_a_field(here: Path) -> None:
+    text = 'import "arm.xml" as arm import "hand.xml" as hand r : robot {{ a : arm {{}} h : hand {{ {} }} spot {{ mass 1 }} other : hand {{ {} }} }}'
+    ours, theirs = load(here, text.format("at=a.flange", "at=spot")), load(here, text.format("+ a.flange", "+ spot"))
+    assert ours == theirs
+    assert ours.bodies["h_palm"].parent == ours.bodies["a_fore"]
+
+
 def test_robots_of_mjcf_keep_what_only_mujoco_knows(here: Path) -> None:
     text = 'import "arm.xml" as arm import "hand.xml" as hand r : robot { a : arm {} h : hand { [0 0 0] + a.flange } }'
     ours = load(here, text).to_mujoco()
@@ -207,6 +214,9 @@ REFUSED = {
     'import "claw.urdf" as c r : robot { x : c, link {} }': "error[HX063]: 'x' is the robot 'c' and cannot have other types",
     'import "claw.urdf" as c r : robot { x : c { mass 1 } }': "error[HX062]: 'mass' has no meaning in the block of the robot 'x'",
     'import "claw.urdf" as c r : robot { x : c { at [0 0 1] + world } }': "error[HX062]: 'x' is placed 2 times",
+    'import "claw.urdf" as c r : robot { x : c { at=x.palm } }': "error[HX062]: 'x' is placed on itself: on body 'x_palm'",
+    'import "claw.urdf" as c r : robot { x : c { + x.finger } }': "error[HX062]: 'x' is placed on itself: on body 'x_finger'",
+    'import "claw.urdf" as c r : robot { x : c { at=x.close } }': "error[HX040]: 'x.close' is a joint; expected a body or world or frame",
     'import "claw.urdf" as c r : robot { x : c {} x.plam { mass 1 } }': "error[HX040]: 'x.plam' is changed, and there is no such element",
     'import "claw.urdf" as c r : robot { x : c {} x.palm { size 1 } }': "error[HX062]: 'size' of body 'x_palm' cannot be changed here",
     'import "claw.urdf" as c r : robot { x : c {} @x.close { - x.palm } }': "error[HX062]: 'an arc' of joint 'x_close' cannot be changed",

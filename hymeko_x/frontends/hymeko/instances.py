@@ -16,7 +16,7 @@ from hymeko_x.ir.parts import Joint, World
 from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse
 from hymeko_x.joining import held, on_body, with_names
 from hymeko_x.language.expansion import Change, Instance
-from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, is_field
+from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, Ref, is_field
 from hymeko_x.language.templates import is_definition
 
 if TYPE_CHECKING:
@@ -143,13 +143,18 @@ def _place(builder: HymekoBuilder, imported: Imported, owners: dict[Id, tuple[Id
             target = builder.target(item.ref, imported.instance.scope, _HOSTS, item)
             found.append(_on(target, IDENTITY if item.weight is None else reader.pose(item.weight, item), owners))
         elif isinstance(item, Field) and is_field(item, _PLACES):
-            found.append((builder.world(), reader.pose(item.value, item)))
+            if isinstance(item.value, Ref) and not item.value.direction:
+                found.append(_on(builder.target(item.value, imported.instance.scope, _HOSTS, item), IDENTITY, owners))
+            else:
+                found.append((builder.world(), reader.pose(item.value, item)))
         elif not isinstance(item, Node | Comment):
             name = item.ref.dotted if isinstance(item, ArcItem) else getattr(item, "name", "import")
-            hint = f"its place is [pose] + body, or at [pose] in the world; a change of an element is {node.name}.element {{ .. }}"
+            hint = f"its place is [pose] + body, at=body, or at [pose] in the world; a change of an element is {node.name}.element {{ .. }}"
             raise reader.refuse(item, f"'{name}' has no meaning in the block of the robot '{node.name}'", hint=hint)
     if len(found) > 1:
         raise reader.refuse(node, f"'{imported.name}' is placed {len(found)} times")
+    if found and found[0][0] != WORLD and found[0][0] in imported.robot.graph.vertices:
+        raise reader.refuse(node, f"'{imported.name}' is placed on itself: on {found[0][0]}")
     return found[0] if found else None
 
 
