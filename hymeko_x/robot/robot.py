@@ -65,7 +65,7 @@ class Robot(RobotData):
     @property
     def dofs(self) -> int:
         """The number of degrees of freedom of all joints, 3 of a ball and 6 of a free joint; couplings and loops are not subtracted."""
-        return sum(_FREEDOMS.get(dof.kind.value, 1) for view in self.mechanism.joints.values() for dof in view.joint.dofs)
+        return text.freedoms(self.mechanism)
 
     def fk(self, q: Coordinates | None = None) -> dict[str, Pose]:
         """The pose of every body in the world (or in the root of its tree), by name, at coordinates by joint in rad or m.
@@ -184,6 +184,3 @@ class Robot(RobotData):
     def with_tensor(self, tensor: Tensor[Id, VertexPart, EdgePart]) -> Robot:
         """The robot with the graph of a tensor: the arcs and weights that its array has now."""
         return self.changed(replace(self.mechanism, graph=from_tensor(tensor)))
-
-
-_FREEDOMS = {"ball": 3, "free": 6}

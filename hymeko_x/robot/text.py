@@ -12,14 +12,19 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism
 
 MOST_LINES = 40
+_FREEDOMS = {"ball": 3, "free": 6}
 
 
 def one_line(mechanism: Mechanism) -> str:
     """``<Robot 'panda': 12 bodies, 11 joints (9 dofs), from panda.urdf>``."""
     bodies = sum(1 for _ in mechanism.vertices(Body))
-    dofs = sum(len(view.joint.dofs) for view in mechanism.joints.values())
     source = f", from {posixpath.basename(mechanism.source.file)}" if mechanism.source.file else ""
-    return f"<Robot '{mechanism.name}': {bodies} bodies, {len(mechanism.joints)} joints ({dofs} dofs){source}>"
+    return f"<Robot '{mechanism.name}': {bodies} bodies, {len(mechanism.joints)} joints ({freedoms(mechanism)} dofs){source}>"
+
+
+def freedoms(mechanism: Mechanism) -> int:
+    """The number of degrees of freedom of all joints, 3 of a ball and 6 of a free joint."""
+    return sum(_FREEDOMS.get(dof.kind.value, 1) for view in mechanism.joints.values() for dof in view.joint.dofs)
 
 
 def tree(mechanism: Mechanism) -> str:

@@ -58,7 +58,8 @@ def test_an_instance_on_a_frame_is_what_attach_makes(here: Path) -> None:
 
 
 def test_the_place_of_an_instance_may_be_a_field(here: Path) -> None:
-    text = 'import "arm.xml" as arm import "hand.xml" as hand r : robot {{ a : arm {{}} h : hand {{ {} }} spot {{ mass 1 }} other : hand {{ {} }} }}'
+    text = """import "arm.xml" as arm import "hand.xml" as hand
+    r : robot {{ a : arm {{}} h : hand {{ {} }} spot {{ mass 1 }} other : hand {{ {} }} }}"""
     ours, theirs = load(here, text.format("at=a.flange", "at=spot")), load(here, text.format("+ a.flange", "+ spot"))
     assert ours == theirs
     assert ours.bodies["h_palm"].parent == ours.bodies["a_fore"]

@@ -40,6 +40,9 @@ def test_an_unknown_name_is_a_key_error_with_similar_names() -> None:
 
 def test_the_text_of_a_robot_is_one_line_or_a_tree_of_at_most_forty() -> None:
     assert repr(claw()) == "<Robot 'claw': 2 bodies, 1 joints (1 dofs), from <text>>"
+    free = hx.loads("r : robot { a {} @j : floating { + world - a } }", "hymeko")
+    assert repr(free) == f"<Robot 'r': 1 bodies, 1 joints ({free.dofs} dofs), from <text>>"
+    assert free.dofs == 6
     assert str(claw()).splitlines()[1:] == ["palm", "  finger  (close: hinge)"]
     links = "".join(f"<link name='l{number}'/>" for number in range(100))
     joints = "".join(
