@@ -18,10 +18,23 @@ from hymeko_x.severities import reasons
 if TYPE_CHECKING:
     from mkdocs.config.defaults import MkDocsConfig
     from mkdocs.structure.files import Files
+    from mkdocs.structure.pages import Page
 
 ROOT = Path(__file__).parents[1]
 OUTSIDE = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 """Pages that stand beside the folder, and their names in the site."""
+FOUND_FIRST = {"questions.md": 8, "tasks/": 4, "command-line.md": 2, "targets.md": 2, "meshes.md": 2, "losses.md": 2}
+FOUND_LAST = {
+    "api.md": 0.2,
+    "diagnostics.md": 0.2,
+    "architecture.md": 0.2,
+    "changelog.md": 0.1,
+    "contributing.md": 0.2,
+    "coverage.md": 0.1,
+    "audit.md": 0.5,
+    "mcp.md": 0.5,
+}
+"""By how much pages come before or behind others in the search: first what users ask, last what is about the program."""
 _LINK = re.compile(r"\]\((?!https?:|#)([^)#]+)(#[^)]*)?\)")
 _NAMED = re.compile(r"^```(\w+) ([\w.]+)$", re.MULTILINE)
 """A block of code with the name of its file."""
@@ -41,8 +54,11 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     return files
 
 
-def on_page_markdown(markdown: str, **_: object) -> str:
-    """Links of a page to files beside this folder as the site has them, and the names of the files that it shows as titles."""
+def on_page_markdown(markdown: str, page: Page, **_: object) -> str:
+    """Links of a page to files beside this folder as the site has them, names of files as titles, and its place in the search."""
+    boost = [factor for name, factor in (FOUND_FIRST | FOUND_LAST).items() if page.file.src_uri.startswith(name)]
+    if boost:
+        page.meta["search"] = {"boost": boost[0]}
     markdown = _NAMED.sub(r'```\1 title="\2"', markdown)
     for source, name in OUTSIDE.items():
         markdown = markdown.replace(f"](../{source})", f"]({name})")

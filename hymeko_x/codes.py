@@ -336,7 +336,7 @@ BAD_TENSOR = Code(
 )
 NO_VISUAL = Code("HX317", "a link cannot be seen", "The link has a mass and no visual shape.")
 NO_COLLISION = Code("HX318", "a link cannot be touched", "The link has a mass and no collision shape.")
-BAD_SIZE = Code("HX319", "a shape has an impossible size", "Sizes and scales are finite and not zero, and a robot is not a kilometre large.")
+BAD_SIZE = Code("HX319", "a shape has an impossible size", "Sizes and scales are finite and not zero, a robot is not a kilometre large, and a mesh of a file without a unit (STL) not 20 m.")
 COM_OUTSIDE = Code(
     "HX320",
     "a centre of mass lies far outside of its body",

@@ -35,6 +35,22 @@ OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
     }
 )
 
+PURPOSES: Mapping[str, str] = MappingProxyType(
+    {
+        "completion": "completion",
+        "convex": "cutting meshes into convex parts",
+        "corpus": "the catalogue of robots",
+        "draw": "drawing",
+        "dynamics": "computing equations",
+        "lsp": "the language server",
+        "mcp": "the server of tools",
+        "meshes": "converting the meshes of this robot",
+        "verify": "the verifier",
+        "view": "the viewer",
+    }
+)
+"""What an extra is for, where its libraries do not belong to one format."""
+
 
 def install_command(extra: str) -> str:
     """The command that installs an extra."""
@@ -51,4 +67,8 @@ def missing_library(error: ModuleNotFoundError) -> Refusal | None:
         _, inside, path = frame.filename.replace("\\", "/").rpartition("/hymeko_x/")
         if inside:
             extra = OF_ROOMS.get(path.partition("/")[0], extra)
-    return refuse(codes.LIBRARY_MISSING, f"this needs the library {library}, which is not installed", hint=install_command(extra))
+    return refuse(
+        codes.LIBRARY_MISSING,
+        f"{PURPOSES.get(extra, 'this')} needs the library {library}, which is not installed",
+        hint=install_command(extra),
+    )

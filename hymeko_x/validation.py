@@ -19,6 +19,7 @@ from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir import parts
 from hymeko_x.ir.ids import LUMPED_KINDS
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView
+from hymeko_x.meshes.unit import extents_of_stl
 from hymeko_x.rewrite.apart import names_apart
 from hymeko_x.rewrite.inertia import principal_moments
 from hymeko_x.rewrite.mimics import leaders_first
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files
 
 _LARGEST = 1e3  # m; larger sizes were probably written in millimetres
+_LARGEST_PART = 20.0  # m; a mesh of a body that is larger in a file without a unit was probably written in millimetres
 _MOST_RADIANS = 100.0  # a hinge that turns further was probably written in degrees
 LEAST_MASS = 1e-15  # kg; below it engines divide by zero
 _EDGE = 1e-9  # relative: rounding of principal moments at the edge of the triangle inequality
@@ -325,9 +327,23 @@ def _check_mesh(found: _Findings, view: ShapeView, key: Id, files: Files) -> Non
     mesh = found.mechanism.vertex(key, parts.Mesh)
     if any(scale == 0.0 or not math.isfinite(scale) for scale in mesh.scale):
         found.error(codes.BAD_SIZE, view.id, f"a mesh of {_owner(view)} has the scale {mesh.scale}")
-    if mesh.uri is not None and not mesh.vertices and files.find(mesh.uri) is None:
+    if mesh.uri is None or mesh.vertices:
+        return
+    if files.find(mesh.uri) is None:
         message = f"the mesh '{mesh.uri}' of {_owner(view)} was not found"
         found.warn(codes.ASSET_NOT_FOUND, view.id, message, package_hint(mesh.uri))
+    elif view.body != WORLD and suffix_of(mesh.uri) == ".stl":
+        _check_unit(found, view, mesh, files)
+
+
+def _check_unit(found: _Findings, view: ShapeView, mesh: parts.Mesh, files: Files) -> None:
+    """A mesh of a file without a unit has the size of a part of a robot."""
+    content = read_file(files, mesh.uri or "")
+    sizes = None if content is None else extents_of_stl(content[1])
+    largest = max((size * abs(scale) for size, scale in zip(sizes or (), mesh.scale, strict=False)), default=0.0)
+    if largest > _LARGEST_PART:
+        message = f"the mesh '{mesh.uri}' of {_owner(view)} is {largest:g} m large"
+        found.warn(codes.BAD_SIZE, view.id, message, "was it written in millimetres? A scale of 0.001 makes them metres")
 
 
 def _check_files(found: _Findings, files: Files) -> None:

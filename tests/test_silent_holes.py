@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from struct import pack
 
 import pytest
 from hypothesis import given, settings
@@ -93,6 +94,19 @@ def test_check_warns_of_a_centre_of_mass_far_outside_of_the_shapes(centre: str, 
     text = LINK.format("".join(SHAPES.values()) + INERTIAL.format(centre))
     validate(hx.loads(text, "urdf").mechanism, NoFiles(), report)
     assert [diagnostic.code.id for diagnostic in report] == expected
+
+
+@pytest.mark.parametrize(("scale", "expected"), [("", ["HX319"]), ('scale="0.001 0.001 0.001"', [])])
+def test_check_warns_of_a_mesh_in_millimetres(scale: str, expected: list[str], tmp_path: Path) -> None:
+    corners = [(0.0, 0.0, 0.0, 300.0, 0.0, 0.0, 0.0, 80.0, 10.0)] * 1200
+    faces = b"".join(pack("<12fH", 0.0, 0.0, 1.0, *corner, 0) for corner in corners)
+    (tmp_path / "part.stl").write_bytes(bytes(80) + pack("<I", len(corners)) + faces)
+    path = tmp_path / "r.urdf"
+    path.write_text(LINK.format(f'<visual><geometry><mesh filename="part.stl" {scale}/></geometry></visual>'))
+    robot, report = hx.load(path), Report()
+    validate(robot.mechanism, robot.files, report)
+    assert [diagnostic.code.id for diagnostic in report] == expected
+    assert [diagnostic.message for diagnostic in report] == ["the mesh 'part.stl' of body 'a' is 300 m large"] * len(expected)
 
 
 # ---- writing ---------------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 import re
 import subprocess
 import sys
@@ -29,6 +30,8 @@ def test_the_site_is_built_without_a_warning_and_loads_nothing_from_elsewhere(tm
     assert [code for code in CODES if f"{code}: " not in diagnostics] == []
     assert [name for name in hymeko_x.__all__ if f'id="hymeko_x.{name}"' not in pages["api/index.html"]] == []
     assert (tmp_path / "search/search_index.json").stat().st_size > 100_000
+    sections = {one["location"]: one for one in json.loads((tmp_path / "search/search_index.json").read_text("utf-8"))["docs"]}
+    assert sections["questions/"]["boost"] > 1.0 > sections["api/"]["boost"]  # what users ask comes before names that contain the word
 
 
 def undocumented(path: Path) -> list[str]:

@@ -127,6 +127,7 @@ def test_a_verb_works_with_the_core_alone_or_names_its_extra(verb: str, folder: 
     assert done.returncode == 1
     assert "HX011" in done.stderr
     assert f"pip install 'hymeko-x[{extra}]'" in done.stderr
+    assert extra not in extras.PURPOSES or f"{extras.PURPOSES[extra]} needs the library " in done.stderr
 
 
 def test_every_extra_that_is_named_exists() -> None:

@@ -287,3 +287,4 @@ def test_the_site_opens_without_an_error_and_fits_a_phone(open_page: Callable[..
         page.locator("input[name=query]").click()
         page.keyboard.type("mimic")
         page.locator(".md-search-result__item").first.wait_for(timeout=20 * SECOND)
+        assert "questions/" in page.locator("a.md-search-result__link").first.get_attribute("href")
