@@ -18,6 +18,11 @@ MOBILE = """mobile : robot {{
 """
 
 
+def test_a_closure_with_dofs_is_a_joint_that_closes_a_loop() -> None:
+    text = "t : robot { base {} a {} @knot : loop { ~ base ~ a dof { moves=slide axis=Y } } @j { + base - a } }"
+    assert "@knot : loop.joint { ~ base ~ a dof : slide { axis=Y } }" in hx.dumps(hx.loads(text, "hymeko"), "hymeko")
+
+
 @pytest.mark.parametrize("suffix", [".xml", ".usda", ".sdf"])
 @pytest.mark.parametrize("kind", ["connect", "weld"])
 def test_a_closure_of_three_bodies_is_two_closures(kind: str, suffix: str, tmp_path: Path) -> None:

@@ -46,6 +46,7 @@ def read_part(builder: HymekoBuilder, key: Id, element: Element) -> None:
         values["limits"] = read_limits(block, "length")
     if key.kind == "loop":
         values["dofs"] = read_dofs(builder, block, element.scope)
+        values.setdefault("kind", "joint" if values["dofs"] else "connect")
     if key.kind in LUMPED_UNITS:
         set_domain(builder, key.kind, element, values)
     if words.open:
