@@ -48,6 +48,12 @@ def test_the_listings_and_our_robots_are_of_the_grammars(path: Path) -> None:
     assert [name for name in NAMES for one in (text, canonical) if not accepts(name, one)] == []
 
 
+def test_a_number_with_exponent_and_unit_is_of_the_grammars() -> None:
+    text = hx.dumps(hx.loads("r : robot { a {} b {} @j { [[0 0 0] [5e-8rad 61 7]] + a - b } }", "hymeko"), "hymeko")
+    assert "[5e-8rad 61 7]" in text
+    assert [name for name in NAMES if not accepts(name, text)] == []
+
+
 @pytest.mark.full
 @pytest.mark.robots("urdf", "mjcf", "usd", "xacro", "sdf")
 def test_the_canonical_text_of_every_real_robot_is_of_the_grammar(robot: Path) -> None:

@@ -55,7 +55,7 @@ PLAIN: Mapping[str, str] = MappingProxyType(
     {
         "NAME": f"{words_except(KEYWORDS)}|{_QUOTED_NAME}",
         "NUMBER": r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?|[+-]?inf|nan",
-        "QUANTITY": r"[+-]?[0-9]+(?:\.[0-9]+)?[A-DF-Za-df-z%°µ][A-Za-z0-9%]*(?:[/*·][A-Za-z0-9%]+|\^-?[0-9]+)*",
+        "QUANTITY": r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?[A-DF-Za-df-z%°µ][A-Za-z0-9%]*(?:[/*·][A-Za-z0-9%]+|\^-?[0-9]+)*",
         "STRING": r'"(?:[^"\\]|\\[^\n])*"|' + r"'(?:[^'\\]|\\[^\n])*'|" + r'"""(?:"?"?[^"])*"""',
         "EXPRESSION": r"\$\{[^{}]*\}",
         "EDGE_WORD": "@",
