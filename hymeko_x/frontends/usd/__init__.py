@@ -55,7 +55,7 @@ def read(source: Source, report: Report) -> Reading:
         builder = UsdBuilder(source, report, scene)
         prims = _prims(scene)
         for prim in prims:
-            check_ops(prim, report, builder.origin)
+            check_ops(prim, report, builder.origin_of(prim))
             if prim.has_api(BODY):
                 read_body(prim, builder)
         bare = read_bare_links(prims, builder)

@@ -14,6 +14,7 @@ from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
 from hymeko_x.formats.usd.joints import AXES
+from hymeko_x.frontends.usd.places import line_of, lines_of_prims
 from hymeko_x.frontends.usd.transforms import Transforms, numbers_of
 from hymeko_x.ir.builder import Builder
 
@@ -65,16 +66,24 @@ class UsdBuilder(Builder, dict=True):
 
     @property
     def origin(self) -> Origin:
-        """The file; USD keeps no lines."""
+        """The file."""
         return Origin(self.source.name)
+
+    @cached_property
+    def _lines(self) -> dict[str, int]:
+        return lines_of_prims(self.source.data)
+
+    def origin_of(self, prim: Prim) -> Origin:
+        """The file and, where it is text, the line of a prim."""
+        return Origin(self.source.name, line_of(prim.path, self._lines))
 
     def warn(self, prim: Prim, code: Code, message: str) -> None:
         """Report a warning about a prim."""
-        self.report.warn(code, message, self.origin, element=prim.path)
+        self.report.warn(code, message, self.origin_of(prim), element=prim.path)
 
     def new_id(self, prim: Prim, kind: str, fallback: str | None = None) -> Id:
         """A fresh id for the element that a prim represents, after the name that it has."""
-        key = self.fresh(kind, self._name(prim, fallback), self.origin)
+        key = self.fresh(kind, self._name(prim, fallback), self.origin_of(prim))
         path = prim.path
         self.elements.setdefault(path, []).append(key)
         if fallback is None:
@@ -116,7 +125,7 @@ class UsdBuilder(Builder, dict=True):
         if name in _SIZES and (read is None or len(read) != _SIZES[name]):
             has = "is no row of numbers" if read is None else f"has {len(read)} numbers"
             message = f"'{name}' {has} and takes {_SIZES[name]}; it is not used"
-            self.report.error(codes.BAD_VALUE, message, self.origin, element=prim.path)
+            self.report.error(codes.BAD_VALUE, message, self.origin_of(prim), element=prim.path)
             return None
         if not prim.is_animated(name):
             self.mark_read(prim, name)

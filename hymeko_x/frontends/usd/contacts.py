@@ -96,7 +96,7 @@ def read_collision_groups(prims: list[Prim], builder: UsdBuilder) -> None:
         key = known.get(frozenset((first, second)))
         if key is None:
             key = builder.names.take("contact", f"{first.name or 'world'}_{second.name}")
-            builder.origins[key] = builder.origin
+            builder.origins[key] = builder.origin_of(groups[0])
             builder.edges[key] = Edge(Contact("exclude"), (Arc(first), Arc(second)))
             builder.note(key, GROUPED, BY_GROUPS)
         else:
@@ -126,7 +126,7 @@ def _pairs(groups: list[Prim], builder: UsdBuilder) -> list[tuple[Id, Id]]:
         found += combinations(here, 2) if here is there else ((a, b) if a < b else (b, a) for a, b in product(here, there))
     if partly is not None:
         message = f"collision groups separate only some colliders of {partly[0]} and {partly[1]}; that is kept as written"
-        builder.report.note(codes.NOT_SAID, message, builder.origin, element=groups[0].path)
+        builder.report.note(codes.NOT_SAID, message, builder.origin_of(groups[0]), element=groups[0].path)
     return [(a, b) for (_, a), (_, b) in sorted(found)]
 
 

@@ -130,7 +130,7 @@ def _add_loop(joint: ReadJoint, builder: UsdBuilder) -> None:
     key = builder.names.take("loop", joint.id.name)
     arcs: tuple[RobotArc, ...] = tuple(Arc(end.body, 0, end.pose) for end in joint.ends)
     builder.edges[key] = Edge(Loop(kind, dofs, joint.is_enabled, parameters), arcs)
-    builder.origins[key] = builder.origin
+    builder.origins[key] = builder.origin_of(joint.prim)
     builder.notations[key] = builder.notations.pop(joint.id, {})
     builder.note(key, words.TYPE, joint.prim.kind)
     builder.elements[joint.prim.path] = [key]
