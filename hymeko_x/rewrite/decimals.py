@@ -36,8 +36,10 @@ def shorten_computed(mechanism: Mechanism, source: Mechanism) -> Mechanism:
     """The mechanism, made from ``source``, with every computed number as the shortest decimal that is equal to rounding."""
     if mechanism.graph is source.graph:
         return mechanism
-    vertices = _changed(mechanism.graph.vertices, source.graph.vertices)
-    edges = _changed(mechanism.graph.edges, source.graph.edges)
+    vertices, edges = (
+        {key: part for key, part in _changed(parts, before).items() if _shortened(part, ()) is not part}
+        for parts, before in ((mechanism.graph.vertices, source.graph.vertices), (mechanism.graph.edges, source.graph.edges))
+    )
     if not vertices and not edges:
         return mechanism
     known = _known(source)

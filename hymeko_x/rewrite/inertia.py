@@ -41,6 +41,8 @@ _ACCURACY = 1e-13
 """By which part of its largest moment a tensor with products must keep the triangle inequality, for a solver with rounding."""
 _WELL = 1e-6
 """How far, as a part of its size, a tensor is from every bound when no eigenvalue has to be computed; roundings are far smaller."""
+_WELL_ABOVE = 1e-13
+"""And above the least moments, in kg m^2."""
 _ROUNDING = 1e-10
 """A change of a tensor in kg m^2 up to this is worth a note and no warning."""
 
@@ -178,7 +180,7 @@ def _is_well_inside(tensor: Tensor) -> bool:
     """
     xx, yy, zz, xy, xz, yz = tensor
     t = (xx + yy + zz) / 2.0
-    if not 1e-7 < t < 1e90:
+    if not 1e-30 < t < 1e90:
         return False
     least = _WELL * t * t * t
     a, b, c = t - xx, t - yy, t - zz
@@ -188,7 +190,7 @@ def _is_well_inside(tensor: Tensor) -> bool:
         return False
     of_tensor = xx * yy * zz + products - xx * squares[2] - yy * squares[1] - zz * squares[0]
     of_others = a * b * c - products - a * squares[2] - b * squares[1] - c * squares[0]
-    return of_tensor > least and of_others > least
+    return of_tensor > max(least, _WELL_ABOVE * t * t) and of_others > least
 
 
 def _projected(moments: Vec3) -> Vec3:

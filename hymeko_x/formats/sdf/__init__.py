@@ -97,14 +97,17 @@ AXES = ("axis", "axis2")
 
 def default_type(joint: Joint) -> str | None:
     """The type of a joint by its dofs; None when SDF has none."""
-    kinds = tuple(dof.kind for dof in joint.dofs)
+    kinds = tuple([dof.kind for dof in joint.dofs])
     if kinds == (DofKind.HINGE,):
         limits = joint.dofs[0].limits
         return "continuous" if limits.lower is None and limits.upper is None else "revolute"
     if kinds == (DofKind.HINGE, DofKind.HINGE):
         first, second = (dof.axis for dof in joint.dofs)
         return "universal" if abs(sum(a * b for a, b in zip(first, second, strict=True))) < 1e-9 else "revolute2"
-    return next((word for word, kind in JOINT_TYPES.items() if kind.dofs == kinds), None)
+    return _TYPES.get(kinds)
+
+
+_TYPES: Mapping[tuple[DofKind, ...], str] = MappingProxyType({kind.dofs: word for word, kind in reversed(JOINT_TYPES.items())})
 
 
 # ---- shapes ------------------------------------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ class BadText(Exception):
 
 
 class Codec(NamedTuple):
-    """How a value is read from text (raises BadText) and written; ``is_plain`` when the value is the numbers of its text."""
+    """How a value is read from text (raises BadText) and written; ``is_plain`` when a value is the numbers of its text, or None."""
 
     read: Callable[[str], Any]
     write: Callable[[Any], str]
@@ -81,8 +81,8 @@ def _colour(text: str) -> tuple[float, ...]:
 NUMBER = Codec(_number, number_text, is_plain=True)
 VECTOR = Codec(_numbers(3), numbers_text, is_plain=True)
 PAIR = Codec(_numbers(2), numbers_text, is_plain=True)
-BOUND = Codec(_bound, lambda value: "inf" if value is None else number_text(value))
-STRENGTH = Codec(_strength, lambda value: "inf" if value is None else number_text(value))
+BOUND = Codec(_bound, lambda value: "inf" if value is None else number_text(value), is_plain=True)
+STRENGTH = Codec(_strength, lambda value: "inf" if value is None else number_text(value), is_plain=True)
 TRUTH = Codec(_truth, lambda value: "true" if value else "false")
 COLOUR = Codec(_colour, numbers_text)
 PITCH = Codec(lambda text: _number(text) / math.tau, lambda value: number_text(value * math.tau))

@@ -55,7 +55,6 @@ def _read_colour(node: Node, key: Id, builder: SdfBuilder) -> Rgba | None:
     """The diffuse colour. An ambient one with the same text is a notation: files that were written from other formats have both."""
     texts = [None if (child := node.child(tag)) is None or child.children else child.text for tag in ("ambient", "diffuse")]
     rgba: Rgba | None = builder.child_value(node, "diffuse", COLOUR, None, key, "material/diffuse")
-    if rgba is not None and texts[0] is not None and texts[0] == texts[1]:
-        builder.child_value(node, "ambient", COLOUR, None, key, words.AMBIENT)
-        builder.written.setdefault(key, {})[words.AMBIENT] = " ".join(texts[0].split())
+    if rgba is not None and texts[0] is not None and texts[0] == texts[1] and (ambient := node.take_child("ambient")) is not None:
+        builder.written.setdefault(key, {})[words.AMBIENT] = " ".join(ambient.take_text().split())
     return rgba
