@@ -144,8 +144,8 @@ PACKAGE_NOT_FOUND = Code(
 )
 INCLUDE_NOT_FOUND = Code(
     "HX053",
-    "a file that a xacro file needs cannot be read",
-    "An included file or a yaml file is not there, may not be read, or is outside the folder to which reading is confined (--confine).",
+    "a file that a file includes cannot be read",
+    "A file that xacro includes or loads as yaml, or a model that SDF includes, is not there, may not be read, or is outside the folder to which reading is confined (--confine). Models of SDF are looked for in the folders of GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH, SDF_PATH and GAZEBO_MODEL_PATH; https:// is never fetched.",
 )
 EXPANSION_LIMIT = Code(
     "HX054",

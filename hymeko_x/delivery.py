@@ -90,7 +90,7 @@ class Delivery(Struct, frozen=True):
         if self.is_archive:
             disk.write_archive(result.package, self.path, archives.main_name(self.format), self.files)
         else:
-            disk.write_package(result.package, self.path, self.files, self.below)
+            disk.write_package(result.package, self.path, self.files, self.below, makes_folder=self.options.package_layout)
 
     @property
     def is_archive(self) -> bool:

@@ -125,12 +125,13 @@ def _check_output(target: Path, *, makes_folders: bool = False) -> None:
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
 
-def write_package(package: Package, path: str, files: Files, within: Within | None = None) -> None:
+def write_package(package: Package, path: str, files: Files, within: Within | None = None, *, makes_folder: bool = False) -> None:
     """Write the main file to ``path`` and its assets beside it. A run that is killed leaves the old output or the new one, whole.
 
     All is written as temporary siblings and then renamed, the main file last. ``within`` gives the same output with its assets below
     a folder: such a main file stands in while assets are replaced that the old one refers to. What an earlier run has kept beside
     the file is removed first, and what this one keeps comes last: no file is ever beside what was kept for another one.
+    ``makes_folder``: the folder of the main file is made where it does not exist.
 
     Raises: Refusal HX002; then no file of an earlier run has been touched, unless the very renaming failed.
     """
@@ -138,6 +139,8 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
     beside = target.with_name(f"{target.name}{KEPT_SUFFIX}")
     assets, main, kept = Staging(), Staging(), Staging()
     try:
+        if makes_folder:
+            main.make_folders(target.parent)
         _check_output(target)
         assets.add_all((place, contents.read(name)) for name, place in _assets(package, target))
         if is_stream := _is_stream(target):
@@ -348,7 +351,7 @@ class Staging(Struct):
     folders: list[Path] = field(default_factory=list)
 
     def make_folders(self, folder: Path) -> None:
-        """Make the folders of an asset below the output's own folder, which must exist; those that are new are noted. Raises: OSError."""
+        """Make the folders in which a file will be; those that are new are noted. Raises: OSError."""
         missing = [place for place in (folder, *folder.parents) if not place.exists()]
         folder.mkdir(parents=True, exist_ok=True)
         self.folders += missing

@@ -271,11 +271,15 @@ def _tidy(path: Path) -> Path:
     return short if short.exists() and short.samefile(path) else path
 
 
+_GAZEBO = ("GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH")
+"""The variables of Gazebo, of its releases before it was renamed, of libsdformat, and of Gazebo Classic."""
+
+
 def search_path(environ: Mapping[str, str]) -> tuple[Path, ...]:
     """The folders in which packages stand, as ROS and Gazebo tell their tools in these environment variables."""
     ros = [Path(text) for text in _entries(environ, "ROS_PACKAGE_PATH")]
     ament = [Path(text) / "share" for text in _entries(environ, "AMENT_PREFIX_PATH")]
-    gazebo = [Path(text) for name in ("GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH") for text in _entries(environ, name)]
+    gazebo = [Path(text) for name in _GAZEBO for text in _entries(environ, name)]
     return tuple(dict.fromkeys((*ros, *ament, *gazebo)))
 
 

@@ -76,7 +76,7 @@ def run_export(chosen: argparse.Namespace) -> int:
     if not chosen.to_format and not chosen.target and chosen.output == "-":
         raise UsageError("say which format to write: --to FORMAT, or -o FILE with its suffix")
     format = _output_format(chosen, chosen.output)
-    disk.check_outputs(chosen.output, chosen.report)
+    _check_outputs(chosen, chosen.output)
     report = Report()
     return deliver(read_input(chosen.input, chosen, report, format), Output(format, chosen.output), chosen, report)
 
@@ -145,7 +145,7 @@ def _convert(chosen: argparse.Namespace, source: str, output: str) -> int:
     if chosen.verify and "-" in (source, output):
         raise UsageError("--verify reads the files again with other engines, so that neither can be a pipe")
     format = _output_format(chosen, output)
-    disk.check_outputs(output, chosen.report)
+    _check_outputs(chosen, output)
     report = Report()
     given = read_input(source, chosen, report, format)
     own = unchanged(given.source, given.format, format)
@@ -240,6 +240,12 @@ def deliver(
     if getattr(chosen, "json", False):
         print(as_text(_document(given, output, report, result.losses)))
     return exits.FAIL_ON if failed else exits.DONE
+
+
+def _check_outputs(chosen: argparse.Namespace, output: str) -> None:
+    """Refuse outputs that could not be written; the folder of a model of Gazebo will be made. Raises: Refusal HX002."""
+    disk.check_outputs(output, makes_folders=chosen.package_layout)
+    disk.check_outputs(chosen.report)
 
 
 def _check_applicable(format: Format, chosen: argparse.Namespace) -> None:

@@ -97,6 +97,9 @@ def test_a_package_deep_below_the_search_path_is_found_by_its_package_xml(tmp_pa
 def test_ros_and_gazebo_variables_become_the_search_path() -> None:
     environ = {"ROS_PACKAGE_PATH": "/ws/src:/opt/src", "AMENT_PREFIX_PATH": "/opt/ros/jazzy:", "GAZEBO_MODEL_PATH": "/models"}
     assert [path.as_posix() for path in search_path(environ)] == ["/ws/src", "/opt/src", "/opt/ros/jazzy/share", "/models"]
+    names = ("SDF_PATH", "GAZEBO_MODEL_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GZ_SIM_RESOURCE_PATH")
+    found = [path.as_posix() for path in search_path({name: f"/{name}" for name in names})]
+    assert found == ["/GZ_SIM_RESOURCE_PATH", "/IGN_GAZEBO_RESOURCE_PATH", "/SDF_PATH", "/GAZEBO_MODEL_PATH"]
     assert search_path({}) == ()
 
 

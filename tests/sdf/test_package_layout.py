@@ -29,8 +29,7 @@ def arm(tmp_path: Path) -> Path:
     (tmp_path / "arm.xml").write_text(ARM, "utf-8")
     (tmp_path / "hull.obj").write_text(TETRAHEDRON, "utf-8")
     (tmp_path / "wood.png").write_bytes(PIXEL)
-    folder = tmp_path / "models" / "arm"
-    folder.mkdir(parents=True)
+    folder = tmp_path / "models" / "arm"  # is made
     assert main(["convert", str(tmp_path / "arm.xml"), str(folder / "model.sdf"), "--package-layout", "--base", "fixed"]) == 0
     return folder
 
@@ -43,6 +42,18 @@ def test_the_folder_has_what_gazebo_looks_for(arm: Path) -> None:
     text = (arm / "model.sdf").read_text("utf-8")
     assert "<uri>model://arm/meshes/hull.obj</uri>" in text
     assert "<albedo_map>model://arm/materials/textures/wood.png</albedo_map>" in text
+
+
+@pytest.mark.unread("HX010")
+def test_a_conversion_that_fails_leaves_no_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "arm.xml").write_text("<mujoco>", "utf-8")
+    command = ["convert", str(tmp_path / "arm.xml"), str(tmp_path / "models" / "arm" / "model.sdf")]
+    assert main([*command, "--package-layout"]) == 1
+    assert not (tmp_path / "models").exists()
+    capsys.readouterr()
+    (tmp_path / "arm.xml").write_text(ARM, "utf-8")
+    assert main(command) == 1
+    assert "there is no folder" in capsys.readouterr().err
 
 
 def test_a_world_includes_it_by_its_name(arm: Path) -> None:
