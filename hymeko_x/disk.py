@@ -130,8 +130,7 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
 
     All is written as temporary siblings and then renamed, the main file last. ``within`` gives the same output with its assets below
     a folder: such a main file stands in while assets are replaced that the old one refers to. What an earlier run has kept beside
-    the file is removed first, and what this one keeps comes last: no file is ever beside what was kept for another one.
-    ``makes_folder``: the folder of the main file is made where it does not exist.
+    the file is removed first, and what this one keeps comes last. ``makes_folder``: a missing folder of the main file is made.
 
     Raises: Refusal HX002; then no file of an earlier run has been touched, unless the very renaming failed.
     """

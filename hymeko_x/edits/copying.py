@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x import formats, pipeline
+from hymeko_x import codes, formats, pipeline
 from hymeko_x.assets.pack import Keep, keep_references
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.assets.shelf import Shelf
@@ -32,8 +32,12 @@ if TYPE_CHECKING:
 def copied(source: Source, format: Format, mechanism: Mechanism, place: pipeline.Place, report: Report) -> Package | None:
     """The package with the source's own text, for an output in another place; None where only a new text would be the same robot there.
 
+    Nor is a text copied whose root is that of an older version of its format, as the reader has reported.
+
     The files that the text includes stand beside the output as they stand beside the source, if they are in its folder or below that.
     """
+    if any(diagnostic.code == codes.WRONG_ROOT for diagnostic in report):
+        return None
     if _is_folder(os.path.dirname(source.name) or ".", place.folder):
         return Package(source.data)
     found = Report()

@@ -44,7 +44,6 @@ _LAST = sys.maxsize
 _FIELDS = {field.path: field for field in (Field("surface/friction/ode/mu", "friction", NUMBER), Field("material/diffuse", "rgba", COLOUR))}
 _FLAGS = ("0", "1", "false", "true")
 """The words for a flag in SDF."""
-_MATERIALS = "file://media/materials/scripts/gazebo.material"
 
 
 def obey_gazebo_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -158,7 +157,7 @@ def _of_link(child: Node, body: Id, mechanism: Mechanism, fields: Fields) -> Ite
     elif child.tag in fragments.OF_COLLISION:
         yield from _values(child, *fragments.OF_COLLISION[child.tag], collisions)
     elif child.tag == "material" and _text(child):
-        script = f"<script><uri>{_MATERIALS}</uri><name>{escaped(_text(child))}</name></script>"
+        script = f"<script><uri>{fragments.MATERIALS}</uri><name>{escaped(_text(child))}</name></script>"
         yield from ((key, _at_end("material", script)) for key in visuals)
     elif child.tag == "mu1":
         _set(_FIELDS["surface/friction/ode/mu"], child, collisions, fields)

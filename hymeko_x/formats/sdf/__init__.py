@@ -107,7 +107,7 @@ def default_type(joint: Joint) -> str | None:
     return _TYPES.get(kinds)
 
 
-_TYPES: Mapping[tuple[DofKind, ...], str] = MappingProxyType({kind.dofs: word for word, kind in reversed(JOINT_TYPES.items())})
+_TYPES: Mapping[tuple[DofKind, ...], str] = MappingProxyType({kind.dofs: word for word, kind in reversed([*JOINT_TYPES.items()])})
 
 
 # ---- shapes ------------------------------------------------------------------------------------------------------------------

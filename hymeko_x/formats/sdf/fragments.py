@@ -59,6 +59,8 @@ OF_MODEL = frozenset(("static", "self_collide", "allow_auto_disable", "enable_wi
 OBEYED = ("preserveFixedJoint", "disableFixedJointLumping")
 """They keep fixed joints, which always stay here."""
 
+MATERIALS = "file://media/materials/scripts/gazebo.material"
+"""Where the materials are that a fragment names, or a file of SDF up to 1.2."""
 BESIDE = "ros2_control"
 """A custom element of <model> that the root of URDF has as well. Of URDF alone it is not written into SDF: Drake refuses it there."""
 

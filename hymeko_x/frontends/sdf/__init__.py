@@ -1,6 +1,6 @@
 """The SDF frontend. Everything in a file becomes typed parts of a mechanism, or an extra, or a diagnostic with its origin.
 
-Source: SDF 1.3 to 1.12 as libsdformat reads it; docs/mapping/sdf.md has the mapping.
+Source: SDF 1.0 to 1.12 as libsdformat reads it; docs/mapping/sdf.md has the mapping.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from hymeko_x.frontends.sdf.models import (
     register_content,
     with_world_link_as_world,
 )
+from hymeko_x.frontends.sdf.old import modernised
 from hymeko_x.frontends.sdf.sensors import read_light
 from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.source import Reading
@@ -48,7 +49,7 @@ def read(source: Source, report: Report) -> Reading:
 
     Raises: Refusal with HX004 (not XML), HX006 (the root is not <sdf>), HX007 (too large), HX008 (entities).
     """
-    document = parse(source, report)
+    document = modernised(parse(source, report), report)
     root = document.root
     _check_root(root)
     carried = [node.take_whole_text() for node in root.take_children(words.RESIDUE)]
@@ -67,12 +68,7 @@ def read(source: Source, report: Report) -> Reading:
 
 def _check_root(root: Node) -> None:
     if root.tag != "sdf":
-        hint = (
-            "SDF up to 1.2 had the root <gazebo>; Gazebo Classic converts such files"
-            if root.tag == "gazebo"
-            else formats.root_hint(root.tag)
-        )
-        raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <sdf>", root.origin, hint=hint)
+        raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <sdf>", root.origin, hint=formats.root_hint(root.tag))
 
 
 def _read_version(root: Node, report: Report) -> str:

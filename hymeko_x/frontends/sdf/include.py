@@ -11,6 +11,7 @@ from msgspec import Struct, field
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.formats import sdf as words
+from hymeko_x.frontends.sdf.old import modernised
 from hymeko_x.source import Source
 from hymeko_x.xml.parse import parse
 from hymeko_x.xml.tree import Node
@@ -176,7 +177,7 @@ def _model(path: str, include: Node, found: Included) -> Node | None:
         if found.count > MOST_FILES or found.bytes > MOST_BYTES:
             report.error(codes.TOO_LARGE, f"more than {MOST_FILES} files are included; this one is not", include.origin)
             return None
-        document = parse(Source(path, data), report)
+        document = modernised(parse(Source(path, data), report), report)
     except (Refusal, OSError) as error:
         reason = error.diagnostic.message if isinstance(error, Refusal) else error.strerror
         report.error(codes.INCLUDE_NOT_FOUND, f"'{path}' cannot be read: {reason}; the <include> is kept as written", include.origin)
