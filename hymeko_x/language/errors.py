@@ -30,6 +30,8 @@ _CLOSERS = {"RBRACE": "{", "RSQB": "[", "RPAR": "("}
 _INDENT = re.compile(r"[ \t]*")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _DIGIT_NAME = re.compile(r"\d+[^\W\d]\w*")
+_GLUED = re.compile(r"(use|as|using|import)(?=\w)")
+_WHOLE_WORD = re.compile(r"const\b[^;{}\n]*;|[\w.]+|\S")
 _NAME_AND_PATH = re.compile(r"(?<![\w:.`])(?<![:@] )([^\W\d]\w*)\s+([^\W\d]\w*(?:\.(?:[^\W\d]\w*|`[^`\n]*`))+)\s*\Z")
 """A name and a path behind it, as in ``at left.flange``."""
 _BEGINNINGS = {
@@ -52,8 +54,12 @@ _CHARACTER_HINTS = {
 }
 
 
-def explain_syntax_error(text: str, name: str) -> Refusal:
-    """The refusal (HX060) for a text that is not HyMeKo: lark reads it again, for the terminals that it expected."""
+def explain_syntax_error(text: str, name: str, offset: int) -> Refusal:
+    """The refusal (HX060) for a text that is not HyMeKo: lark reads it again, for the terminals that it expected.
+
+    ``offset`` is where the machine refuses it. lark takes some words for names and others for two, `- const k = 1;` and `useful`, where the
+    machine does not.
+    """
     from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
     try:
@@ -62,7 +68,14 @@ def explain_syntax_error(text: str, name: str) -> Refusal:
         return _unexpected_token(error, text, name)
     except UnexpectedCharacters as error:
         return _unexpected_character(error, text, name)
-    raise AssertionError(f"lark accepts what the machine refuses: {text[:200]!r}")
+    line, column = text.count("\n", 0, offset) + 1, offset - text.rfind("\n", 0, offset)
+    word = _WHOLE_WORD.match(text, offset)
+    found = word[0] if word else ""
+    glued = _GLUED.match(found)
+    hint = f"a blank stands behind '{glued[0]}'" if glued else "a constant stands between items" if found.startswith("const") else ""
+    return refuse(
+        codes.SYNTAX, f"unexpected {_shown(found)}", Origin(name, line, column), hint=hint, excerpt=excerpt(text, line, column, len(found))
+    )
 
 
 @cache
@@ -155,6 +168,10 @@ def _expectation_hint(expected: set[str], token: str, before: str) -> str:
         return "a list of numbers stands in brackets: [1 2 3]"
     if token == ";" and not expected.isdisjoint({"RSQB", "RPAR"}):
         return "values and parameters are separated by white space or commas"
+    if token.startswith("${") and "LBRACE" in expected:
+        return "a block begins with '{'; '${ }' is a calculation, and stands where a value may stand"
+    if token == "@" and before in ("+", "-", "~", ">"):
+        return "behind a direction an edge stands without '@': + name"
     if token in ("+", "-", "~") and expected >= {"RPAR", "COMMA"}:
         return "arcs in parentheses are separated by commas: (+ a, - b)"
     if token == "{" and expected >= {"RPAR", "COMMA"}:

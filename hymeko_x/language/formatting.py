@@ -92,7 +92,7 @@ def format_text(text: str, name: str = "<text>") -> str:
             lines.append("")
         lines.append(INDENT * line.depth + words)
     found = "".join(f"{line}\n" for line in lines)
-    if found != text and _words(found) != _words(text) and [*map(_plain, _tokens(found))] != [*map(_plain, tokens)]:
+    if found != text and _words(found) != _words(text) and [*_plain(_tokens(found))] != [*_plain(tokens)]:
         raise refuse(codes.BUG, "the text in its usual layout is another text; it is left as it is", Origin(name))
     return found
 
@@ -102,8 +102,13 @@ def _words(text: str) -> list[str]:
     return [word.rstrip() for word in _WORDS.findall(text)]
 
 
-def _plain(token: Token) -> tuple[str, str]:
-    return token.kind, token.text.rstrip() if token.kind in _COMMENTS else token.text
+def _plain(tokens: Sequence[Token]) -> Iterator[tuple[str, str]]:
+    """The terminals and texts of tokens; those of a list of numbers one by one, whether or not there are line breaks in it."""
+    for token in tokens:
+        if token.kind == "NUMBERS":
+            yield from (("" if piece in "[]," else "NUMBER", piece) for piece in _PIECES.findall(token.text))
+        else:
+            yield "" if token.text in "[]," else token.kind, token.text.rstrip() if token.kind in _COMMENTS else token.text
 
 
 # ---- tokens --------------------------------------------------------------------------------------------------------------------

@@ -197,10 +197,11 @@ class Machine:
         return 0 if skipped is None else skipped.end()
 
     def parts(self, text: str, position: int, end: int) -> Iterator[tuple[str, str, int]]:
-        """The tokens of a statement, or of what looks like a calculation."""
+        """The tokens of a statement, or of what looks like a calculation. Raises: ParseError for a calculation behind a dollar sign."""
         while position < end:
             match = self._part.match(text, position)
-            assert match is not None
+            if match is None:
+                raise ParseError(position)
             kind = match.lastgroup or ""
             yield kind, text[position : match.end(kind)], position
             position = match.end()

@@ -50,7 +50,7 @@ def parse(text: str, name: str = "<text>") -> Document:
         line, column = lines.place(error.offset)
         raise refuse(codes.SYNTAX, str(error), Origin(name, line, column), excerpt=excerpt(text, line, column, 1)) from error
     except ParseError as error:
-        raise explain_syntax_error(text, name) from error
+        raise explain_syntax_error(text, name, error.offset) from error
     return with_comments(document, text, gaps, lines)
 
 

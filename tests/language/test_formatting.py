@@ -112,6 +112,7 @@ LAYOUTS = {
         "a { x [1, 2, 3] y=-Z [1] + b, leg(h, r=0.1) : link {} @j : fixed {} }\n"
     ),
     "a { x [1 2\n 3 4\n] }": "a {\n  x [1 2\n    3 4\n  ]\n}\n",
+    "a{v[1\n,2](+e,-b)}": "a {\n  v [1, 2] (+ e, - b)\n}\n",
     "a {\n\n\n  b {}\n\n\n  c {}\n\n}": "a {\n  b {}\n\n  c {}\n}\n",
     "@e{(a - b),(+ c)x(1 + 2)}": "@e { (a - b), (+ c) x (1 + 2) }\n",
     'f : r { e1 : - @>"n1" c : <string> <?> }': 'f : r { e1 : - @>"n1" c : <string> <?> }\n',

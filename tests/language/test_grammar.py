@@ -127,7 +127,8 @@ def _mutated(words: list[str], chance: random.Random) -> list[str]:
         case 2:
             result[place - 1], result[place] = result[place], result[place - 1]
         case _:
-            result[place] = chance.choice(["{", "}", "[", "]", "(", ")", ",", ":", "=", "+", "->", "@", "use", "import", "1", "'a'", "x"])
+            signs = ["{", "}", "[", "]", "(", ")", ",", ":", "=", "+", "->", "@", "${", ";", "<"]
+            result[place] = chance.choice([*signs, "use", "import", "1", "'a'", "x"])
     return result
 
 
