@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
 
 _NAMED = re.compile(r"(\w+) '([^']*)'")
+_MENTIONED = re.compile(r"[\['\"]([^\[\]'\"]+)[\]'\"]")
 _NEW_NAME = re.compile(r"(\w+) '[^']*' is called '([^']*)'")
 
 
@@ -71,6 +72,10 @@ class Lines:
         named = _NAMED.findall(words)
         others = _NEW_NAME.findall(words)
         return self._place(files[0], named, of_joints), self._place(files[1], [*others, *named], of_joints)
+
+    def mentioned(self, file: str, message: str) -> Origin:
+        """The line of the first element whose name an engine's message has in brackets or quotes; line 1 without one."""
+        return self._place(file, [("joint", name) for name in _MENTIONED.findall(message)], False)
 
     def _place(self, file: str, named: list[tuple[str, str]], of_joints: bool) -> Origin:
         mechanism = self._read(file)

@@ -10,7 +10,6 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x.agree.files import Lines, path_of
-from hymeko_x.diagnostics import Origin
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from hymeko_x.agree.config import Allowed, Robot
+    from hymeko_x.diagnostics import Origin
     from hymeko_x.verify.verdict import Check, Verdict
 
 _CONSEQUENCES = (
@@ -120,7 +120,8 @@ def _verdict(robot: Robot, folder: Path, path: str, search_path: tuple[Path, ...
 def _disagreements(robot: Robot, path: str, verdict: Verdict, lines: Lines, today: date) -> Iterator[Disagreement]:
     files = robot.files[0], path
     if verdict.reason:
-        yield Disagreement(robot.name, files, "not comparable", verdict.reason, places=tuple(Origin(file, 1) for file in files))
+        places = tuple(lines.mentioned(file, verdict.reason) for file in files)
+        yield Disagreement(robot.name, files, "not comparable", verdict.reason, places=places)
         return
     failed = [check for check in verdict.failed if not any(fnmatchcase(check.quantity, ignored) for ignored in robot.ignore)]
     causes = [check for check in failed if check.quantity not in _CONSEQUENCES]

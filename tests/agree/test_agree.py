@@ -149,6 +149,19 @@ def test_a_planted_fault_is_found_with_file_and_line(file: str, fault: str, fold
     assert min(abs(second["line"] - line) for line in lines) <= (20 if file.endswith(".usda") else 8), (second, lines)
 
 
+@pytest.mark.unread("HX040")
+def test_a_file_that_its_engine_refuses_has_the_line_of_what_the_engine_names(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("pydrake")
+    path = pair("arm.sdf")
+    path.write_text(path.read_text().replace('<joint name="elbow"', '<joint name="elbo"'))
+    code, out = agree(capsys)
+    assert code == exits.DIFFERENT
+    place = re.search(r"arm\.urdf:(\d+) and arm\.sdf:(\d+): libsdformat refuses the file: .* name\[elbow\] .* link with name\[fore\]", out)
+    assert place, out
+    assert ARM.splitlines()[int(place[1]) - 1].strip() == '<joint name="elbow" type="revolute">'
+    assert path.read_text().splitlines()[int(place[2]) - 1].strip() == '<link name="fore">'
+
+
 # ---- what is known -----------------------------------------------------------------------------------------------------------
 
 
