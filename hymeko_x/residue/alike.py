@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from typing import TYPE_CHECKING
 
@@ -19,12 +20,15 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import Extra, RobotArc
 
+_UPWARD = re.compile(r"^(?:\.\.?/)+")
 _FEWEST_DIGITS = 6
 """To how many digits MuJoCo rounds what it saves; other programs keep more."""
 _ROUNDED = 6e-6
 """By how much rounding changes a number at most, as a part of it."""
 _TURNED = 1e-5
 """The same for a quaternion: of three angles that are rounded, each turns it by half of its error."""
+URI = "uri"
+"""The field of a mesh or an image that names its file."""
 _NOISE = 1e-12
 """In m, and of a direction: less than this is left of zero where poses are composed and taken apart again."""
 _WHOLES = frozenset({4, 6})
@@ -46,7 +50,15 @@ def is_alike(now: object, then: object) -> bool:
     if layout is None or type(now) is not type(then):
         return now == then
     pairs = zip(layout.counting, layout.compared(now), layout.compared(then), strict=True)
-    return all(item.name == "name" or is_alike(a, b) for item, a, b in pairs)
+    return all(item.name == "name" or (is_moved(a, b) if item.name == URI else is_alike(a, b)) for item, a, b in pairs)
+
+
+def is_moved(now: object, then: object) -> bool:
+    """Whether a file is the one that it was, perhaps seen from another folder: one path without ``../`` is the end of the other."""
+    if not isinstance(now, str) or not isinstance(then, str):
+        return now == then
+    a, b = (f"/{_UPWARD.sub('', path)}" for path in (now, then))
+    return a.endswith(b) or b.endswith(a)
 
 
 def _without_lost_colour(now: Edge, then: Edge) -> Edge:  # type: ignore[type-arg]

@@ -7,15 +7,16 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
+from msgspec import NODEFAULT
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats
 from hymeko_x.compare.leaves import TURN, default_at, get, put
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Body, Drive, Mount, Plane, Sense, Shape
+from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Shape, Texture
 from hymeko_x.ir.types import is_sound, settled
-from hymeko_x.residue.alike import holds, is_alike
+from hymeko_x.residue.alike import URI, holds, is_alike, is_moved
 from hymeko_x.residue.arcs import with_edited_weights
 from hymeko_x.residue.landmarks import renamed_since
 from hymeko_x.residue.parts import GEOMETRY, broken, parts_of
@@ -148,6 +149,8 @@ class _Merge:
             return False
         if change.path[-1] == TURN:
             value = value[0]  # type: ignore[index]
+        if change.path[-1] == URI and change.there is not NODEFAULT:
+            return is_moved(value, change.there)
         if not holds(value, change.there, default):
             return False
         is_left_out = change.path == ("inertial",) and change.value is None and isinstance(part, Body)
@@ -199,17 +202,24 @@ class _Merge:
         self.edges |= waiting
 
     def _remove(self, kept: set[Id]) -> dict[Id, VertexPart | RobotEdge]:
-        """Take away what only the image has, unless it was edited."""
+        """Take away what only the image has, unless it was edited; an edited file that nothing uses any more, too."""
         gone: dict[Id, VertexPart | RobotEdge] = {}
         together = {part.id for parts in self._parts.values() for part in parts}
+        edited: list[Id] = []
         for removal in self.residue.removals:
             key = removal.id
             if key in kept or key in gone or key not in self.image.graph:
                 continue
             if key not in together and not self._is_untouched(removal):
+                edited.append(key)
+            else:
+                gone[key] = self.vertices.pop(key) if key in self.vertices else self.edges.pop(key)
+        used = {arc.target for edge in self.edges.values() for arc in edge.arcs} if edited else set()
+        for key in edited:
+            if isinstance(self.vertices.get(key), Mesh | Texture) and key not in used:
+                gone[key] = self.vertices.pop(key)
+            else:
                 self._note(key, "was edited, and stays")
-                continue
-            gone[key] = self.vertices.pop(key) if key in self.vertices else self.edges.pop(key)
         return gone
 
     def _let_nothing_dangle(self, removed: dict[Id, VertexPart | RobotEdge]) -> None:

@@ -183,3 +183,28 @@ def test_the_humanoid_of_the_demo_keeps_its_actuators_and_its_free_base(robot: P
     a, b = (mujoco.MjModel.from_xml_path(str(path)) for path in (first, second))
     assert (a.nu, a.nq - a.nv, b.nu, b.nq - b.nv) == (43, 1, 43, 1)
     assert differences(a, b) == []
+
+
+TWO_COLOURS = """mtllib two.mtl
+v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1
+usemtl red\nf 1 2 3\nf 1 2 4
+usemtl blue\nf 1 3 4\nf 2 3 4
+"""
+
+
+@pytest.mark.parametrize("keep", ["beside", "inside"])
+def test_what_is_kept_of_a_mesh_in_several_parts_holds_in_another_folder(keep: Any, tmp_path: Path) -> None:
+    (tmp_path / "two.obj").write_text(TWO_COLOURS)
+    (tmp_path / "two.mtl").write_text("newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n")
+    (tmp_path / "r.urdf").write_text(
+        '<robot name="r"><link name="a"><visual><geometry><mesh filename="two.obj"/></geometry></visual></link></robot>'
+    )
+    first, second = tmp_path / "a" / "r.xml", tmp_path / "b" / "c" / "r.xml"
+    for path in (first, second):
+        path.parent.mkdir(parents=True)
+    hx.convert(tmp_path / "r.urdf", first, keep=keep, assets="reference")
+    hx.convert(first, second, keep=keep, assets="reference")
+    assert first.read_text().count("<mesh ") == second.read_text().count("<mesh ") == 2
+    a, b = (hx.load(path).mechanism for path in (first, second))
+    assert [part.uri for _, part in b.assets()] == [part.uri for _, part in a.assets()] == ["two.obj"]
+    assert faults(a, b, "mjcf") == []
