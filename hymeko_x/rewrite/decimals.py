@@ -83,7 +83,7 @@ def _shortened(value: Any, known: Collection[float]) -> Any:
     """The value with short numbers, but for those known. Depth is that of the parts, which is small."""
     kind = type(value)
     if kind is float:
-        return value if value in known else shortest(value)
+        return value if value in known or (new := shortest(value)) == value else new
     if kind is tuple:
         return _tuple(value, known)
     if kind is Pose:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 from xml.parsers.expat import ExpatError
 
@@ -210,7 +211,8 @@ def _name_in(key: Id, text: str) -> str:
     return words.split_scope(key.name)[0] + unescaped(names.get("name", ""))
 
 
-def _elements(text: str) -> list[tuple[str, str, int]]:
+@lru_cache(1024)
+def _elements(text: str) -> tuple[tuple[str, str, int], ...]:
     """The elements of a piece of XML and their attributes, outer ones first: path, content, and how many of them are below each.
 
     That number is negative for an element that is more than its elements. The content is without layout, comments and declared namespaces.
@@ -233,4 +235,4 @@ def _elements(text: str) -> list[tuple[str, str, int]]:
             below = len(found) - place - 1
             is_more = len(tokens) - first > 2 and not tokens[first + 1].startswith("<")
             found[place] = path, "\n".join(tokens[first:]), -below if is_more or " " in tokens[first] else below
-    return found
+    return tuple(found)
