@@ -18,7 +18,7 @@ from hymeko_x.edits.copying import copied
 from hymeko_x.pipeline import Result
 from hymeko_x.reporting.mark import marked
 from hymeko_x.rewrite import Options
-from hymeko_x.source import Kept
+from hymeko_x.source import Kept, suffix_of
 
 if TYPE_CHECKING:
     from hymeko_x.formats import Assets, Format
@@ -76,6 +76,8 @@ class Delivery(Struct, frozen=True):
         if self.own is None or not self.path or replace(self.options, beside="", keep=None, lenient=False) != Options():
             return None
         if self.passed is not None and self.passed.text and self.passed.is_beside is (self.options.keep == "inside"):
+            return None
+        if not self.own.data.startswith(self.format.suffix_magic.get(suffix_of(self.path), b"")):
             return None
         return copied(self.own, self.format, self.mechanism, self.place, report)
 

@@ -158,6 +158,7 @@ USD = Format(
     "hymeko_x.backends.usd",
     "hymeko_x.backends.usd.rules",
     magic=(b"#usda", b"PXR-USDC"),
+    suffix_magic=MappingProxyType({".usda": b"#usda"}),
     outline="hymeko_x.frontends.usd.outline:outline",
     has_variants=True,
     layout_options=frozenset({"layout", "nested"}),

@@ -41,6 +41,8 @@ class Format(Struct, frozen=True):
     """The XML root elements of its files."""
     magic: tuple[bytes, ...] = ()
     """The first bytes of its files."""
+    suffix_magic: Mapping[str, bytes] = field(default_factory=dict)
+    """How files with a suffix have to begin, where others of the format need not: a ``.usda`` is text, and a ``.usd`` may be binary."""
     beginning: bytes | None = None
     """The pattern with which its texts begin, where they have neither a root element nor first bytes of their own (HyMeKo, JSON)."""
     shared_suffixes: frozenset[str] = frozenset()

@@ -35,6 +35,22 @@ TEXTS = {"urdf": ARM, "mjcf": MJCF, "xacro": XACRO, "hymeko": HYMEKO, "usd": USD
 SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "usd": ".usda", "hymeko": ".hymeko", "xacro": ".xacro"}
 
 
+def test_a_binary_stage_becomes_text_where_the_suffix_asks_for_text(tmp_path: Path) -> None:
+    hx.convert(written(tmp_path / "arm.urdf", ARM), tmp_path / "arm.usdc")
+    stage = written(tmp_path / "arm.usd", (tmp_path / "arm.usdc").read_bytes())
+    (tmp_path / "other").mkdir()
+    hx.convert(stage, tmp_path / "other" / "same.usd")
+    hx.convert(stage, tmp_path / "other" / "text.usda")
+    assert (tmp_path / "other" / "same.usd").read_bytes() == stage.read_bytes()
+    assert (tmp_path / "other" / "text.usda").read_text().startswith("#usda 1.0\n")
+    assert hx.verify(stage, tmp_path / "other" / "text.usda", samples=5).verdict == "same"
+
+
+def written(path: Path, content: str | bytes) -> Path:
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
 @pytest.mark.parametrize("format", TEXTS)
 @pytest.mark.parametrize("folder", ["", "other"])
 def test_a_conversion_within_a_format_gives_the_same_bytes(format: str, folder: str, tmp_path: Path) -> None:
