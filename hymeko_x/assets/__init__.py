@@ -1,0 +1,1 @@
+"""Files that robots refer to: found, and placed beside an output."""

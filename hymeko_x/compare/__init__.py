@@ -1,0 +1,1 @@
+"""Differences between mechanisms, and the ledger of a conversion."""

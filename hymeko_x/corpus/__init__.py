@@ -1,0 +1,1 @@
+"""Robots of published packages: the catalogue, their cache, batch runs and statistics."""

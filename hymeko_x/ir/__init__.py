@@ -1,0 +1,1 @@
+"""The structure that every format is read into: graph, parts, mechanism."""

@@ -1,0 +1,1 @@
+"""HyMeKo text: grammar, parser, printer, errors."""

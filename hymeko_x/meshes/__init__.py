@@ -1,0 +1,1 @@
+"""Geometry and images of files: reading, measuring, converting."""

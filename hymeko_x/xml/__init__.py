@@ -1,0 +1,1 @@
+"""One tree of XML with positions, its printer, and the repair of damaged files."""
