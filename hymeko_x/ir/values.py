@@ -30,6 +30,7 @@ Y: Vec3 = (0.0, 1.0, 0.0)
 Z: Vec3 = (0.0, 0.0, 1.0)
 NO_ROTATION: Quat = (1.0, 0.0, 0.0, 0.0)
 
+_RIGID = 1e-5  # how far a matrix in single precision may be from a rotation
 _UNIT_TOLERANCE = 4e-15  # a normalised vector is this close to unit norm; normalising it again must not change a bit
 
 
@@ -58,19 +59,26 @@ class Pose(Noted, frozen=True):
 
     @staticmethod
     def from_quat(quat: Quat, xyz: Vec3 = ZERO) -> Pose:
-        """The pose of any non-zero quaternion (w, x, y, z) and a position in m."""
+        """The pose of any non-zero quaternion (w, x, y, z) and a position in m. Raises: ZeroDivisionError for a zero quaternion."""
         w, x, y, z = map(float, quat)
         return Pose(_point(xyz), unit_quat((w, x, y, z)))
 
     @staticmethod
     def from_matrix(matrix: Sequence[Sequence[float]]) -> Pose:
-        """The pose of a rigid 4 x 4 matrix, or of a 3 x 3 rotation matrix, row by row."""
+        """The pose of a rigid 4 x 4 matrix, with the position in m, or of a 3 x 3 rotation matrix, row by row.
+
+        Raises: ValueError for another shape, and for a matrix that scales, shears or mirrors by more than 1e-5.
+        """
         rows = [tuple(map(float, row)) for row in matrix]
-        xyz = ZERO if len(rows) == 3 else (rows[0][3], rows[1][3], rows[2][3])
-        return Pose(xyz, quat_from_matrix(((*rows[0][:3],), (*rows[1][:3],), (*rows[2][:3],))))  # type: ignore[arg-type]
+        if [len(row) for row in rows] not in ([3] * 3, [4] * 4):
+            raise ValueError("a pose is a matrix of 4 x 4 or 3 x 3 numbers")
+        a, b, c = ((row[0], row[1], row[2]) for row in rows[:3])
+        if not all(math.dist(cross(one, other), third) <= _RIGID for one, other, third in ((a, b, c), (b, c, a), (c, a, b))):
+            raise ValueError("the matrix is no rotation: it scales, shears or mirrors")
+        return Pose(ZERO if len(rows) == 3 else (rows[0][3], rows[1][3], rows[2][3]), quat_from_matrix((a, b, c)))
 
     def matrix(self) -> tuple[tuple[float, float, float, float], ...]:
-        """The 4 x 4 matrix, row by row."""
+        """The 4 x 4 matrix, row by row, with the position in m."""
         rows = zip(matrix_from_quat(self.quat), self.xyz, strict=True)
         return (*((*row, position) for row, position in rows), (0.0, 0.0, 0.0, 1.0))
 

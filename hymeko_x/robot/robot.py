@@ -145,7 +145,7 @@ class Robot(RobotData):
         right, each of which becomes the other one in every name.
 
         Shapes that are no meshes are symmetric; meshes get a negative scale; the picture of a camera is mirrored left to right.
-        Extras stay as they are.
+        Extras stay as they are. Raises: ValueError for names that are not two words.
         """
         image = mirror(self.mechanism)
         return self.changed(image if names is None else with_names(image, swapped(names), is_part=False))
@@ -170,7 +170,7 @@ class Robot(RobotData):
         return memory.hand_over(self.mechanism, self.files, "pinocchio")
 
     def to_usd(self) -> Any:
-        """The robot as a ``pxr.Usd.Stage`` in memory."""
+        """The robot as a ``pxr.Usd.Stage`` in memory, in m and kg with z up. Raises: Refusal when it cannot be written."""
         return memory.hand_over(self.mechanism, self.files, "pxr")
 
     def to_networkx(self) -> Any:

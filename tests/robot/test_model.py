@@ -123,6 +123,21 @@ def test_a_robot_is_the_same_in_another_process() -> None:
     assert hx.dumps(again, "urdf") == hx.dumps(robot, "urdf")
 
 
+@pytest.mark.parametrize(
+    ("matrix", "message"),
+    [
+        ([[2, 0, 0], [0, 1, 0], [0, 0, 1]], "the matrix is no rotation: it scales, shears or mirrors"),
+        ([[2, 0, 0], [0, 2, 0], [0, 0, 2]], "the matrix is no rotation: it scales, shears or mirrors"),
+        ([[-1, 0, 0], [0, 1, 0], [0, 0, 1]], "the matrix is no rotation: it scales, shears or mirrors"),
+        ([[float("nan"), 0, 0], [0, 1, 0], [0, 0, 1]], "the matrix is no rotation: it scales, shears or mirrors"),
+        ([[1, 0], [0, 1]], "a pose is a matrix of 4 x 4 or 3 x 3 numbers"),
+    ],
+)
+def test_a_matrix_that_is_no_pose_is_refused(matrix: list[list[float]], message: str) -> None:
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        hx.Pose.from_matrix(matrix)
+
+
 def test_a_robot_does_not_change() -> None:
     with pytest.raises(hx.EditError, match=r"body 'palm' belongs to a robot, which does not change; use `with robot.edit\(\) as e:`"):
         claw().bodies["palm"].mass = 1
