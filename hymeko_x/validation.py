@@ -16,9 +16,10 @@ from msgspec import Struct
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import package_hint
 from hymeko_x.assets.shelf import read_file
+from hymeko_x.diagnostics import Origin
 from hymeko_x.ir import parts
 from hymeko_x.ir.ids import LUMPED_KINDS
-from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, JointView, Mechanism, ShapeView
 from hymeko_x.meshes.unit import extents_of_stl
 from hymeko_x.rewrite.apart import names_apart
 from hymeko_x.rewrite.inertia import principal_moments
@@ -70,6 +71,7 @@ def validate(
     _check_structure(found)
     _check_numbers(found, declared or Declared())
     _check_names(found)
+    _check_poses(found)
     for view in mechanism.joints.values():
         for dof in view.joint.dofs:
             _check_dof(found, view.id, dof)
@@ -145,6 +147,18 @@ def _check_names(found: _Findings) -> None:
             arcs = mechanism.graph.edges[key].arcs
             message = f"{arcs[0].target} follows {arcs[1].target}, which comes behind it in the tree, or follows another joint"
             found.note(codes.LATE_LEADER, key, message, "`check --fix` turns the relation round where it has no actuator")
+
+
+def _check_poses(found: _Findings) -> None:
+    """Named configurations have a number for each coordinate of the robot."""
+    row = formats.of_source(found.mechanism)
+    if row is None or row.misfits is None:
+        return
+    file = found.mechanism.source.file
+    origin = found.mechanism.origin(ROOT) or (Origin(file) if file else None)
+    for message, is_refused in formats.loaded(row.misfits)(found.mechanism):
+        record = found.report.error if is_refused else found.report.warn
+        record(codes.BAD_NUMBER, message, origin, element=str(ROOT))
 
 
 def _check_parents(found: _Findings, joints: Iterable[JointView]) -> None:

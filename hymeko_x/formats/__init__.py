@@ -117,6 +117,7 @@ MJCF = Format(
     names_in="hymeko_x.formats.mjcf.prefixes:renamed",
     couplings="hymeko_x.formats.mjcf.couplings:couplings",
     poses="hymeko_x.formats.mjcf.keyframes:poses",
+    misfits="hymeko_x.formats.mjcf.lengths:misfits",
     joins="hymeko_x.formats.mjcf.keyframes:joined",
     restates="hymeko_x.formats.mjcf.keyframes:restated",
     resizes="hymeko_x.formats.mjcf.sizes:resized",

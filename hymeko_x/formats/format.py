@@ -89,6 +89,9 @@ class Format(Struct, frozen=True):
     """Whether its extras are elements of XML in which <joint_name>, <link_name> and their like name elements of the robot."""
     poses: str | None = None
     """The function ``mechanism -> list of (name, {joint: coordinates})`` that reads the named configurations that it keeps as texts."""
+    misfits: str | None = None
+    """The function ``mechanism -> list of (message, is_refused)``: the named configurations that it keeps as texts and that do not fit the
+    robot, and whether its engine refuses them."""
     joins: str | None = None
     """The function ``(whole, host, part, change) -> whole`` that gives a composed mechanism what depends on all of its elements."""
 

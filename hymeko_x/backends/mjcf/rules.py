@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-from collections import defaultdict
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -12,11 +10,12 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.backends.mjcf.steady import integrate_implicitly
 from hymeko_x.diagnostics import Origin
-from hymeko_x.formats.mjcf.keyframes import is_keyframes, with_poses
+from hymeko_x.formats.mjcf.keyframes import with_poses
+from hymeko_x.formats.mjcf.lengths import has_soft_bodies, without_misfits
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.words import NAME, compiler_has
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Actuator, Body, DofKind
+from hymeko_x.ir.parts import Body
 from hymeko_x.rewrite.actuators import drop_foreign_actuators, drop_idle_actuators
 from hymeko_x.rewrite.couplings import drop_odd_tendons, make_couplings_scalar, make_tendons_sound, name_wrapped_shapes
 from hymeko_x.rewrite.differentials import drive_by_differentials
@@ -36,7 +35,6 @@ from hymeko_x.rewrite.roots import put_world_link_into_world, report_open_bases
 from hymeko_x.rewrite.shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.rewrite.subsets import split_subsets
 from hymeko_x.rewrite.transmissions import drive_by_transmissions
-from hymeko_x.xml.text import unescaped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -137,58 +135,21 @@ def _is_inertial(extra: Extra) -> bool:
     return extra.format == NAME and not extra.path and extra.text.startswith("<inertial")
 
 
-_COORDINATES: Mapping[DofKind, tuple[int, int]] = MappingProxyType({DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)})
-"""How many coordinates and velocities a dof has; one of each for all others."""
-_KEY = re.compile(r"<key\b[^>]*?/>|<key\b.*?</key>", re.DOTALL)
-_NAMED = re.compile(r'\sname="([^"]*)"')
-_NUMBERS = re.compile(r'\b(qpos|qvel|ctrl)="([^"]*)"')
-
-
 def _drop_stale_keyframes(mechanism: Mechanism, context: Context) -> Mechanism:
     """Keyframes are kept verbatim, and fit as long as no joint or actuator is added or removed; MuJoCo refuses others."""
-    own = mechanism.extras.get(ROOT, ())
-    if _has_soft_bodies(mechanism) or not any(is_keyframes(extra) for extra in own):
-        return mechanism
-    kinds = [dof.kind for view in mechanism.joints.values() for dof in view.joint.dofs]
-    counts = {
-        "qpos": sum(_COORDINATES.get(kind, (1, 1))[0] for kind in kinds),
-        "qvel": sum(_COORDINATES.get(kind, (1, 1))[1] for kind in kinds),
-        "ctrl": sum(1 for _ in mechanism.vertices(Actuator)),
-    }
-    stale: dict[str, list[str]] = defaultdict(list)
-    kept = tuple(_with_fitting_keys(extra, counts, stale) if is_keyframes(extra) else extra for extra in own)
+    kept, stale = without_misfits(mechanism)
     file = mechanism.source.file
     origin = mechanism.origin(ROOT) or (Origin(file) if file else None)
     for reason, names in stale.items():
         which = f"keyframe {names[0]} has" if len(names) == 1 else f"{len(names)} keyframes ({', '.join(names[:2])}, ...) have"
         left = "it is" if len(names) == 1 else "they are"
         context.report.warn(codes.NOT_SAID, f"{which} {reason}; {left} left out", origin)
-    return mechanism if kept == own else replace(mechanism, extras={**mechanism.extras, ROOT: kept})
-
-
-def _has_soft_bodies(mechanism: Mechanism) -> bool:
-    """Whether there are bodies that have coordinates of their own, which no joint of the robot counts."""
-    return any("<flex" in extra.text or "<composite" in extra.text for extra in mechanism.extras.get(ROOT, ()))
+    return kept
 
 
 def _write_poses_as_keyframes(mechanism: Mechanism, _context: Context) -> Mechanism:
     """Named poses are keyframes, where joints count all coordinates."""
-    return mechanism if _has_soft_bodies(mechanism) else with_poses(mechanism)
-
-
-def _with_fitting_keys(extra: Extra, counts: dict[str, int], stale: dict[str, list[str]]) -> Extra:
-    """The keyframes that fit the robot; the names of others are added to ``stale``, by the reason."""
-
-    def fitting(found: re.Match[str]) -> str:
-        for name, numbers in _NUMBERS.findall(found[0]):
-            if len(numbers.split()) != counts[name]:
-                called = _NAMED.search(found[0])
-                reason = f"{len(numbers.split())} numbers in {name}, and the robot has {counts[name]}"
-                stale[reason].append(f"'{unescaped(called[1])}'" if called else "without a name")
-                return ""
-        return found[0]
-
-    return replace(extra, text=_KEY.sub(fitting, extra.text))
+    return mechanism if has_soft_bodies(mechanism) else with_poses(mechanism)
 
 
 ACTUATED: tuple[Rule, ...] = (integrate_implicitly,)

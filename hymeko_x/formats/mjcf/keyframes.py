@@ -10,6 +10,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x.formats.mjcf import NAME
+from hymeko_x.formats.mjcf.lengths import COORDINATES, controls_of, is_keyframes
 from hymeko_x.formats.mjcf.tree import parse_text, verbatim
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism, end_of, numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Stance
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import JointView
 
-_WIDTHS: Mapping[DofKind, tuple[int, int]] = {DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)}
 _BY_JOINT = ("qpos", "qvel")
 
 
@@ -116,15 +116,10 @@ def _pose_of(numbers: tuple[float, ...]) -> Pose:
     return Pose.from_quat((quat[0], quat[1], quat[2], quat[3]), (x, y, z))
 
 
-def is_keyframes(extra: Extra) -> bool:
-    """Whether an extra is a <keyframe> section of MJCF."""
-    return extra.format == NAME and extra.text.startswith("<keyframe")
-
-
 def _slots(mechanism: Mechanism, name: str) -> Iterator[tuple[Id, tuple[float, ...]]]:
     """Each joint or actuator in the order of the numbers, with those that it has without a key."""
     if name == "ctrl":
-        yield from ((key, (0.0,)) for key, _ in mechanism.vertices(Actuator))
+        yield from ((key, (0.0,) * controls_of(actuator)) for key, actuator in mechanism.vertices(Actuator))
         return
     for body in mechanism.depth_first():
         view = mechanism.parent_joint.get(body)
@@ -144,7 +139,7 @@ def _rest(mechanism: Mechanism, view: JointView) -> Iterator[float]:
 
 
 def _width(kind: DofKind) -> tuple[int, int]:
-    return _WIDTHS.get(kind, (1, 1))
+    return COORDINATES.get(kind, (1, 1))
 
 
 def _key(attributes: dict[str, str], slots: Mapping[str, list[tuple[Id, tuple[float, ...]]]]) -> Key | None:

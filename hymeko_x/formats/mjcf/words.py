@@ -186,7 +186,7 @@ RESOLVED = ("kp", "kv", "ctrlrange", "forcerange")
 
 LAW = (
     *("dyntype", "gaintype", "biastype", "dynprm", "gainprm", "biasprm", "ctrllimited", "forcelimited", "actlimited"),
-    *("actrange", "lengthrange", "actdim", "cranklength", "inheritrange", "dampratio", "timeconst", "tausmooth"),
+    *("actrange", "lengthrange", "actdim", "input", "cranklength", "inheritrange", "dampratio", "timeconst", "tausmooth"),
     *("range", "force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax", "area", "diameter", "bias"),
 )
 """Other parameters of its law; typed even where its class gives them, behind the actuator's own."""
