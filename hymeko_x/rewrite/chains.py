@@ -7,6 +7,7 @@ So every body of the source is in the result, at the same place for the same coo
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct
@@ -14,14 +15,17 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.ir.kinematics import edges_to_moved_dofs
-from hymeko_x.ir.mechanism import Id, JointView, Mechanism, joint_edge
+from hymeko_x.ir.mechanism import Id, JointView, Mechanism, joint_edge, numbers_weight
 from hymeko_x.ir.names import names_in_use
-from hymeko_x.ir.parts import UNLIMITED, Body, Dof, DofKind, Joint
-from hymeko_x.ir.values import IDENTITY, ZERO, Pose, X, Y, Z, add, compose, inverse, quat_about, scaled
+from hymeko_x.ir.parts import UNLIMITED, Body, Dof, DofKind, Joint, Stance
+from hymeko_x.ir.values import IDENTITY, ZERO, Pose, X, Y, Z, add, compose, inverse, quat_about, quat_inverse, rpy_from_quat, scaled
 
 if TYPE_CHECKING:
-    from hymeko_x.ir.mechanism import RobotEdge
+    from collections.abc import Iterator, Mapping
+
+    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
     from hymeko_x.ir.names import Names
+    from hymeko_x.ir.values import Vec3
     from hymeko_x.rewrite.context import Context
 
 
@@ -40,6 +44,8 @@ class _Chains(Struct):
     vertices: dict[Id, Body]
     edges: dict[Id, RobotEdge]
     moved: dict[tuple[Id, int], tuple[Id, str]]
+    parts: dict[Id, list[tuple[Dof, list[Id]]]]
+    """The old dofs of each joint, each with the joints that it has become."""
 
 
 def chain_dofs(
@@ -51,13 +57,13 @@ def chain_dofs(
     """
     if not chained:
         return mechanism
-    chains = _Chains(names_in_use(mechanism), {}, {}, {})
+    chains = _Chains(names_in_use(mechanism), {}, {}, {}, {})
     for view in chained:
         count = _add_chain(view, chains, keeps_balls=keeps_balls, poses_children=poses_children)
         if count:
             message = f"{view.id} has dofs or a frame that the format cannot represent; it is written as a chain of {count + 1} joints"
             context.report.note(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
-    edges = edges_to_moved_dofs(mechanism, chains.moved) | chains.edges
+    edges = edges_to_moved_dofs(mechanism, chains.moved) | _stances(mechanism, chains.parts) | chains.edges
     old = {view.id for view in chained}
     return mechanism.replace(vertices=chains.vertices, edges=edges, without=old - set(chains.edges))
 
@@ -71,6 +77,8 @@ def _add_chain(view: JointView, chains: _Chains, *, keeps_balls: bool, poses_chi
         return 0
     parent = view.parent
     count = len(steps) - (offset == IDENTITY)
+    keys: list[list[Id]] = [[] for _ in view.joint.dofs]
+    chains.parts[view.id] = list(zip(view.joint.dofs, keys, strict=True))
     for place, step in enumerate(steps):
         last = place == len(steps) - 1
         body = view.child if last and offset == IDENTITY else chains.names.take("body", f"{view.child.name}_carrier")
@@ -78,6 +86,7 @@ def _add_chain(view: JointView, chains: _Chains, *, keeps_balls: bool, poses_chi
             chains.vertices[body] = Body()
         key = _joint_name(view, step, last, chains)
         chains.moved[view.id, step.number] = (key, "")
+        keys[step.number].append(key)
         chains.edges[key] = joint_edge(Joint((step.dof,)), parent, body, step.pose, beside if last else IDENTITY)
         parent = body
     if offset != IDENTITY:
@@ -94,6 +103,41 @@ def _joint_name(view: JointView, step: _Step, last: bool, chains: _Chains) -> Id
     return chains.names.take("joint", step.dof.name or f"{view.id.name}_{step.number + 1}")
 
 
+_WIDTHS: Mapping[DofKind, int] = MappingProxyType({DofKind.BALL: 4, DofKind.FREE: 7})
+"""How many coordinates a dof has; one for all others."""
+
+
+def _stances(mechanism: Mechanism, parts: Mapping[Id, list[tuple[Dof, list[Id]]]]) -> dict[Id, RobotEdge]:
+    """The named configurations that have coordinates of joints that became chains, with those of the joints of the chains."""
+    return {
+        key: replace(edge, arcs=tuple(new for arc in edge.arcs for new in _arcs_of(arc, parts.get(arc.target))))
+        for key, edge in mechanism.graph.edges.items()
+        if isinstance(edge.data, Stance) and any(arc.target in parts for arc in edge.arcs)
+    }
+
+
+def _arcs_of(arc: RobotArc, parts: list[tuple[Dof, list[Id]]] | None) -> Iterator[RobotArc]:
+    """The coordinates of a joint as those of the joints that it became, if they are as many as it has."""
+    numbers = numbers_weight(arc)
+    if parts is None or len(numbers) != sum(_WIDTHS.get(dof.kind, 1) for dof, _ in parts):
+        yield arc
+        return
+    start = 0
+    for dof, keys in parts:
+        own = numbers[start : (start := start + _WIDTHS.get(dof.kind, 1))]
+        if len(keys) == 1:
+            yield replace(arc, target=keys[0], weight=own)
+        else:
+            yield from (replace(arc, target=key, weight=(angle,)) for key, angle in zip(keys, _turns(own), strict=True))
+
+
+def _turns(numbers: tuple[float, ...]) -> Vec3:
+    """The angles about x, y and z, each in the frame that the one before has turned, in rad, of a quaternion (w, x, y, z)."""
+    w, x, y, z = numbers
+    roll, pitch, yaw = rpy_from_quat(quat_inverse((w, x, y, z)))
+    return -roll, -pitch, -yaw
+
+
 def _steps(view: JointView, *, keeps_balls: bool) -> tuple[list[_Step], Pose]:
     """The joints of the chain, each with its frame in the one before, and the child's frame in the last one.
 
@@ -102,7 +146,7 @@ def _steps(view: JointView, *, keeps_balls: bool) -> tuple[list[_Step], Pose]:
     steps = []
     frame = view.parent_pose
     for number, dof in enumerate(view.joint.dofs):
-        for single in [dof] if keeps_balls else _singles(dof):
+        for single in [dof] if keeps_balls else _singles(dof, dof.name or view.id.name):
             at = compose(frame, Pose(dof.anchor))
             steps.append(_Step(compose(at, _moved_by(single, -dof.ref)), replace(single, anchor=ZERO, ref=0.0), number))
             frame = Pose(add(ZERO, scaled(dof.anchor, -1.0)))  # a sum has no negative zeros
@@ -111,12 +155,12 @@ def _steps(view: JointView, *, keeps_balls: bool) -> tuple[list[_Step], Pose]:
     return steps, compose(frame, inverse(view.child_pose))
 
 
-def _singles(dof: Dof) -> list[Dof]:
-    """The dof itself, or three hinges for a ball; their damping and friction are those of the ball."""
+def _singles(dof: Dof, name: str) -> list[Dof]:
+    """The dof itself, or three hinges for a ball of this name; their damping and friction are those of the ball."""
     if dof.kind is not DofKind.BALL:
         return [dof]
     same = replace(dof, kind=DofKind.HINGE, limits=UNLIMITED, written=None)
-    return [replace(same, axis=axis, name=f"{dof.name}_{letter}" if dof.name else None) for axis, letter in ((X, "x"), (Y, "y"), (Z, "z"))]
+    return [replace(same, axis=axis, name=f"{name}_{letter}") for axis, letter in ((X, "x"), (Y, "y"), (Z, "z"))]
 
 
 def _moved_by(dof: Dof, coordinate: float) -> Pose:

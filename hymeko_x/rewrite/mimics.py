@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.ir.mechanism import coupling_edge, numbers_weight
-from hymeko_x.ir.parts import Coupling, Drive, Tendon
+from hymeko_x.ir.parts import Coupling, DofKind, Drive, Tendon
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Mapping
@@ -59,6 +59,13 @@ def driven_joints(mechanism: Mechanism) -> Iterator[Id]:
         for arc in arcs:
             tendon = mechanism.graph.edges.get(arc.target) if arc.sign < 0 else None
             yield from [arc.target] if tendon is None or not isinstance(tendon.data, Tendon) else [end.target for end in tendon.arcs]
+
+
+def moving_joints(mechanism: Mechanism) -> list[Id]:
+    """The joints with one hinge or slide, in the order of the tree."""
+    place = {body: number for number, body in enumerate(mechanism.depth_first())}
+    views = sorted(mechanism.joints.values(), key=lambda view: place.get(view.child, len(place)))
+    return [view.id for view in views if [dof.kind for dof in view.joint.dofs] in ([DofKind.HINGE], [DofKind.SLIDE])]
 
 
 def leaders_first(mechanism: Mechanism, driven: Container[Id] = ()) -> dict[Id, RobotEdge]:

@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.backends.urdf.gazebo import hold_sensors
 from hymeko_x.backends.urdf.ros2_control import declare_ros2_control
+from hymeko_x.backends.urdf.rules import with_joints_of_urdf
 from hymeko_x.diagnostics import counted
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import srdf
@@ -17,9 +18,9 @@ from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, joint_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import Actuator, Contact, DofKind, PoseSet, Role
+from hymeko_x.ir.parts import Actuator, Contact, PoseSet, Role
 from hymeko_x.rewrite.apart import call_joints_apart
-from hymeko_x.rewrite.mimics import driven_joints, put_driven_first
+from hymeko_x.rewrite.mimics import driven_joints, moving_joints, put_driven_first
 from hymeko_x.rewrite.poses import name_poses
 from hymeko_x.rewrite.roots import floating_joint, leave_scenery_out
 from hymeko_x.rewrite.transmissions import followers
@@ -102,9 +103,10 @@ def declare_groups(mechanism: Mechanism, context: Context) -> Mechanism:
     own = mechanism.extras.get(ROOT, ())
     if any(extra.path == srdf.PATH and extra.text.startswith("<group ") for extra in own):
         return mechanism
-    following = followers(mechanism)
-    driven = set(driven_joints(mechanism))
-    moving = [view.id for view in mechanism.joints.values() if _moves(view.joint.dofs) and view.id not in following]
+    seen = with_joints_of_urdf(mechanism, context)
+    following = followers(seen)
+    driven = set(driven_joints(seen))
+    moving = [key for key in moving_joints(seen) if key not in following]
     group = [key for key in moving if not driven or key in driven] or moving
     if not group:
         return mechanism
@@ -117,10 +119,6 @@ def declare_groups(mechanism: Mechanism, context: Context) -> Mechanism:
     poses = {key: replace(pose, group=pose.group or srdf.ALL) for key, pose in mechanism.vertices(PoseSet)}
     mechanism = mechanism.replace(vertices=poses)
     return replace(mechanism, extras={**mechanism.extras, ROOT: (*own, *extras)})
-
-
-def _moves(dofs: tuple[object, ...]) -> bool:
-    return len(dofs) == 1 and getattr(dofs[0], "kind", None) in (DofKind.HINGE, DofKind.SLIDE)
 
 
 RULES: tuple[Rule, ...] = (

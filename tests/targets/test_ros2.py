@@ -245,6 +245,61 @@ def test_the_way_through_urdf_and_srdf_and_back_gives_the_same_torques(text: str
     assert after.key("home").qpos[after.joint("shoulder").qposadr[0]] == 0.5
 
 
+SHOULDER = """<mujoco model="shoulder">
+  <compiler angle="radian"/>
+  <worldbody>
+    <body name="trunk"><geom size="0.1"/>
+      <body name="arm" pos="0 0 0.3"><geom size="0.1"/>
+        <joint name="lift" axis="0 1 0" ref="0.2" range="-1 2" pos="0 0 -0.1"/><joint name="turn" axis="0 0 1" pos="0 0.05 0"/>
+        <body name="fore" pos="0 0 0.3"><geom size="0.05"/><joint name="elbow" axis="0 1 0"/>
+          <body name="ball" pos="0 0 0.3"><geom size="0.05"/><joint name="wrist" type="ball"/></body>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <tendon><fixed name="both"><joint joint="turn" coef="0.5"/><joint joint="elbow" coef="2"/></fixed></tendon>
+  <actuator>
+    <position name="lifts" joint="lift" kp="30" kv="2" forcerange="-40 40"/>
+    <motor name="bends" tendon="both" gear="2"/>
+    <motor name="turns" joint="turn" gear="3"/>
+  </actuator>
+  <keyframe><key name="home" qpos="0.5 -0.25 0.75 0.5 0.5 -0.5 0.5"/></keyframe>
+</mujoco>"""
+
+
+@pytest.mark.unread("HX103")  # bodies between the joints of a chain have no mass
+def test_the_joints_of_one_body_have_commands_poses_and_come_back(tmp_path: Path) -> None:
+    """Joints on one body of MJCF are a chain of joints in URDF."""
+    (tmp_path / "shoulder.xml").write_text(SHOULDER, "utf-8")
+    urdf = tmp_path / "shoulder.urdf"
+    report = hx.convert(tmp_path / "shoulder.xml", urdf, target="ros2").report
+    assert [item for item in report if item.code.id == "HX104"] == []
+    system, srdf = etree.parse(str(urdf)).find("ros2_control"), srdf_of(urdf)
+    starts = {node.get("name"): node.findtext("state_interface[@name='position']/param") for node in system.findall("joint")}
+    quarter = "1.5707963267948966"
+    assert starts == {"lift": "0.5", "turn": "-0.25", "elbow": "0.75", "wrist_x": quarter, "wrist_y": None, "wrist_z": quarter}
+    assert system.findtext("gpio/param[@name='joints']") == "turn elbow"
+    assert [node.get("name") for node in srdf.find("group")] == ["lift", "turn", "elbow"]
+    assert [node.get("name") for node in srdf.findall("passive_joint")] == ["wrist_x", "wrist_y", "wrist_z"]
+    state = {node.get("name"): float(node.get("value")) for node in srdf.find("group_state")}
+    assert [state[name] for name in ("lift", "turn", "elbow")] == [0.5, -0.25, 0.75]
+    hx.convert(urdf, tmp_path / "back.xml", target="mujoco")
+    before, after = (mujoco.MjModel.from_xml_path(str(tmp_path / name)) for name in ("shoulder.xml", "back.xml"))
+    data, other = mujoco.MjData(before), mujoco.MjData(after)
+    mujoco.mj_resetDataKeyframe(before, data, 0)
+    mujoco.mj_resetDataKeyframe(after, other, 0)
+    data.ctrl[:] = other.ctrl[:] = (0.3, -0.7, 0.2)
+    for found, model in ((data, before), (other, after)):
+        mujoco.mj_forward(model, found)
+    assert other.body("ball").xmat == pytest.approx(data.body("ball").xmat, abs=1e-12)
+    assert other.body("ball").xpos == pytest.approx(data.body("ball").xpos, abs=1e-12)
+    assert [after.actuator(i).name for i in range(after.nactuator)] == ["lifts", "bends", "turns"]
+    names = ("lift", "turn", "elbow")
+    ours, theirs = ([float(found.joint(name).qfrc_actuator[0]) for name in names] for found in (data, other))
+    assert theirs == pytest.approx(ours, rel=1e-9)
+    assert all(ours)
+
+
 GRIPPER = """<mujoco model="grip">
   <compiler angle="radian"/>
   <worldbody>

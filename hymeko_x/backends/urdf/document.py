@@ -110,7 +110,7 @@ def _around(extras: list[Extra], path: str, sheet: UrdfSheet) -> list[str]:
 
 
 def _order(sheet: UrdfSheet) -> list[Id]:
-    """Every element that stands at top level, once: new materials and roots, then the author's order, then other new elements."""
+    """Every element that stands at top level, once: materials, new roots, the author's order, and other new elements."""
     materials = _robot_materials(sheet)
     rest = [*_tree(sheet), *_transmissions(sheet)]
     wanted = {*materials, *rest}
@@ -118,7 +118,9 @@ def _order(sheet: UrdfSheet) -> list[Id]:
     placed = set(known)
     new = [key for key in rest if key not in placed]
     roots = {key: None for key in new if key.kind == "body" and key not in sheet.mechanism.parent_joint}
-    return [*(key for key in materials if key not in placed), *roots, *known, *(key for key in new if key not in roots)]
+    first = next((place for place, key in enumerate(known) if key.kind != "material"), len(known))
+    before, behind = known[:first], known[first:]
+    return [*(key for key in materials if key not in placed), *before, *roots, *behind, *(key for key in new if key not in roots)]
 
 
 def _robot_materials(sheet: UrdfSheet) -> list[Id]:

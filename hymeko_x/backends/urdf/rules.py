@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
 from hymeko_x import codes
 from hymeko_x.backends.urdf.gazebo import write_gazebo_fragments
 from hymeko_x.backends.urdf.srdf import as_virtual_joint
+from hymeko_x.diagnostics import Report
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf.notations import CAPSULE, STYLE, TYPE, VIRTUAL, Style
 from hymeko_x.ir.mechanism import ROOT
@@ -30,6 +33,14 @@ if TYPE_CHECKING:
 def chain_joints(mechanism: Mechanism, context: Context) -> Mechanism:
     """A joint that is no URDF joint becomes a chain of joints with one dof each."""
     return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if not _is_joint(view, mechanism)])
+
+
+def with_joints_of_urdf(mechanism: Mechanism, context: Context) -> Mechanism:
+    """The mechanism with the joints, and their names, that it has in URDF, for what refers to them; nothing is reported."""
+    silent = replace(context, report=Report())
+    for rule in RULES[: RULES.index(chain_joints) + 1]:
+        mechanism = rule(mechanism, silent)
+    return mechanism
 
 
 def _is_joint(view: JointView, mechanism: Mechanism) -> bool:

@@ -22,14 +22,20 @@ if TYPE_CHECKING:
 def read_ros2_control(root: Node, builder: UrdfBuilder) -> None:
     """Add an actuator for each command interface that says which one it is, and one for all others of a joint together."""
     for system in (node for node in root.children if node.tag == words.TAG):
-        for combined in (node for node in system.children if node.tag == words.COMBINED):
-            _read_combined(combined, builder)
         gears = dict(_gears(system))
-        for joint in (node for node in system.children if node.tag == "joint"):
-            name, interfaces = joint.attributes.get("name", ""), [node for node in joint.children if node.tag == "command_interface"]
-            plain = [node for node in interfaces if not _read_interface(node, name, builder)]
-            if len(plain) == len(interfaces) > 0 and name in builder.joints:
-                _read_commands(plain, name, gears.get(name, ("", None)), builder)
+        for node in system.children:
+            if node.tag == "joint":
+                _read_joint(node, gears.get(node.attributes.get("name", ""), ("", None)), builder)
+            elif node.tag == words.COMBINED:
+                _read_combined(node, builder)
+
+
+def _read_joint(node: Node, gear: tuple[str, float | None], builder: UrdfBuilder) -> None:
+    """Add the actuators of a joint's interfaces."""
+    name, interfaces = node.attributes.get("name", ""), [child for child in node.children if child.tag == "command_interface"]
+    plain = [child for child in interfaces if not _read_interface(child, name, builder)]
+    if len(plain) == len(interfaces) > 0 and name in builder.joints:
+        _read_commands(plain, name, gear, builder)
 
 
 def _gears(system: Node) -> Iterator[tuple[str, tuple[str, float | None]]]:
