@@ -103,6 +103,34 @@ def test_home_is_a_keyframe_in_which_nothing_pushes(tmp_path: Path) -> None:
         "--for mujoco: 1 pair of bodies touching at home excluded from collision: 'base' and 'fore'"
     ]
     assert done.losses == ()
+    assert '<exclude body1="base" body2="fore"/>' in (tmp_path / "arm.xml").read_text()
+
+
+HELD = """
+held : robot {
+  base {} upper { mass 1 inertia [0.1 0.1 0.1] box [0.1 0.1 0.1] } fore { mass 1 inertia [0.1 0.1 0.1] box [0.1 0.1 0.1] }
+  @lift : revolute { + base - upper axis=Y limit [-2 2] }
+  @bend : revolute { [0 0 0.5] + upper - fore axis=Y limit [-2 2] }
+  lifts : actuator.general { [2] - lift ctrlrange [0 255] gainprm 0.5 biastype "affine" biasprm [1 -20 -2] }
+  bends : actuator.position { - bend kp 10 }
+  rest : pose { [0.5] ~ lift [-0.25] ~ bend }
+}
+"""
+
+
+def test_named_poses_are_keyframes_in_which_the_servos_hold_the_robot(tmp_path: Path) -> None:
+    """A general law with a slope is a servo, and one with damping asks for the implicit integrator."""
+    (tmp_path / "held.hymeko").write_text(HELD)
+    done = hx.convert(tmp_path / "held.hymeko", tmp_path / "held.xml", base="fixed", target="mujoco")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "held.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    assert ([model.key(number).name for number in range(model.nkey)], list(data.qpos)) == (["rest"], [0.5, -0.25])
+    assert list(data.ctrl) == [38.0, -0.25]  # 0.5 c + 1 - 20 (2 * 0.5) = 0
+    assert list(data.qfrc_actuator) == [0.0, 0.0]
+    assert model.opt.integrator == mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    assert "--for mujoco: keyframes have the controls of servos: 'rest'" in [item.message for item in done.report]
 
 
 def test_what_the_target_added_is_there_in_hymeko_text_as_well(tmp_path: Path) -> None:

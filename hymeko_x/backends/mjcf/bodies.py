@@ -14,13 +14,13 @@ from hymeko_x.formats.mjcf.codec import POSE
 from hymeko_x.formats.mjcf.notations import CHILDCLASS, frame_of
 from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
 from hymeko_x.ir.mechanism import WORLD
-from hymeko_x.ir.parts import Body
+from hymeko_x.ir.parts import Body, Role
 from hymeko_x.ir.values import IDENTITY, compose, inverse
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.sheet import BodyTag, MjcfSheet
-    from hymeko_x.ir.mechanism import Id, JointView
+    from hymeko_x.ir.mechanism import Id, JointView, ShapeView
     from hymeko_x.ir.parts import Inertial
 
 _POSE = (POSE,)
@@ -47,13 +47,19 @@ def _filled(sheet: MjcfSheet, body: BodyTag) -> list[BodyTag]:
         _add_inertial(sheet, body, inertial)
     for number in range(len(view.joint.dofs) if view is not None else 0):
         write_dof(sheet, body, view, number)  # type: ignore[arg-type]
-    for shape in mechanism.shapes.get(key, ()):
+    shapes = mechanism.shapes.get(key, ())
+    for shape in shapes if sheet.from_mjcf else sorted(shapes, key=_is_collision):
         write_geom(sheet, body, shape)
     for mount in mechanism.mounts.get(key, ()):
         write_mount(sheet, body, mount)
     if key == WORLD:
         return [_add_body(sheet, body, root, mechanism.parent_joint.get(root)) for root in mechanism.roots]
     return [_add_body(sheet, body, joint.child, joint) for joint in mechanism.children.get(key, ())]
+
+
+def _is_collision(view: ShapeView) -> bool:
+    """Whether a shape is only touched; what is seen stands before it, as in the files of MuJoCo Menagerie."""
+    return view.shape.role is Role.COLLISION
 
 
 def _add_inertial(sheet: MjcfSheet, body: BodyTag, inertial: Inertial) -> None:

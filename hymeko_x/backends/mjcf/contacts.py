@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.sheet import tag_of
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Contact
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ def write_contacts(sheet: MjcfSheet) -> None:
             continue
         own_class = sheet.own_class(key)
         attributes = {
-            "name": sheet.name(key),
+            "name": None if sheet.mechanism.notation(key, UNNAMED) else sheet.name(key),
             "class": own_class,
             **{name: sheet.reference(arc) for name, arc in zip(_ENDS[contact.kind], arcs, strict=True)},
             **sheet.parameters(contact.parameters, f"contact/{contact.kind}", sheet.base(contact.kind, own_class)),

@@ -32,6 +32,14 @@ def integrate_implicitly(mechanism: Mechanism, context: Context) -> Mechanism:
 
 
 def _has_damped_drive(mechanism: Mechanism) -> bool:
-    if any(actuator.kind in _FEEDBACK for _, actuator in mechanism.vertices(Actuator)):
+    if any(_is_damped(actuator) for _, actuator in mechanism.vertices(Actuator)):
         return True
     return any(tendon.damping for _, tendon, _ in mechanism.edges(Tendon))
+
+
+def _is_damped(actuator: Actuator) -> bool:
+    """Whether the force of an actuator depends on a velocity: by its kind, or by a general law."""
+    given = dict(actuator.parameters)
+    laws = ((given.get(f"{name}type"), given.get(f"{name}prm")) for name in ("gain", "bias"))
+    is_affine = any(kind == "affine" and isinstance(numbers, tuple) and any(numbers[2:3]) for kind, numbers in laws)
+    return actuator.kind in _FEEDBACK or (actuator.kind == "general" and is_affine)
