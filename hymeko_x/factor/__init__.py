@@ -31,6 +31,7 @@ from hymeko_x.factor.finish import finish, name_texts
 from hymeko_x.factor.flat import Flat, Workspace, to_forms
 from hymeko_x.factor.forms import Dialect
 from hymeko_x.factor.macros import apply
+from hymeko_x.factor.wrappers import tidy
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -51,5 +52,6 @@ def factor(forms: Iterable[Element], dialect: Dialect) -> Factored:
             flat = Flat(workspace, dialect)
             if not apply(families(flat, dialect), flat, workspace, dialect):
                 break
+        tidy(workspace, dialect)
         done = finish(workspace, dialect)
         return name_texts(done, dialect) if dialect.values else done

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from hymeko_x.factor.flat import to_items
+from hymeko_x.factor.flat import every_form, to_items
 from hymeko_x.factor.forms import Call, Element, Factored, Hole, Macro, Parameter, Value, joined
 from hymeko_x.factor.macros import free_name, identifier
 
@@ -20,21 +20,13 @@ def finish(workspace: Workspace, dialect: Dialect) -> Factored:
     """The result: calls without arguments that are defaults, macros before those that call them."""
     lists = workspace.lists
     called: dict[str, list[Form]] = {name: [] for name in workspace.macros}
-    for form in _all(lists):
+    for form in every_form(lists):
         if form.is_call:
             called[form.tag].append(form)
     parameters = {name: _parameters(draft, called[name], dialect) for name, draft in workspace.macros.items()}
     calls = {id(form): _call(form, parameters[name]) for name, forms in called.items() for form in forms}
     macros = [Macro(name, parameters[name], to_items(workspace.macros[name].body, calls)) for name in _ordered(workspace)]
     return Factored(to_items(workspace.items, calls), tuple(macros))
-
-
-def _all(lists: list[list[Form]]) -> Iterator[Form]:
-    stack = [form for row in lists for form in row]
-    while stack:
-        form = stack.pop()
-        yield form
-        stack += form.children
 
 
 def _parameters(draft: OpenMacro, calls: list[Form], dialect: Dialect) -> tuple[Parameter, ...]:
@@ -56,7 +48,7 @@ def _call(form: Form, parameters: tuple[Parameter, ...]) -> Call:
 
 def _ordered(workspace: Workspace) -> list[str]:
     """The names of the macros, each behind those that it calls."""
-    needs = {name: {form.tag for form in _all([draft.body]) if form.is_call} for name, draft in workspace.macros.items()}
+    needs = {name: {form.tag for form in every_form([draft.body]) if form.is_call} for name, draft in workspace.macros.items()}
     done: dict[str, None] = {}
     stack = list(reversed(workspace.macros))
     while stack:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.factor.forms import Call, Element, Hole, Signed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Hashable, Iterable
+    from collections.abc import Callable, Hashable, Iterable, Iterator
 
     from hymeko_x.factor.forms import Dialect, Item, Text
 
@@ -53,6 +53,15 @@ class Workspace:
     def lists(self) -> list[list[Form]]:
         """The rows of forms: the items, then the bodies of the macros."""
         return [self.items, *(macro.body for macro in self.macros.values())]
+
+
+def every_form(lists: Iterable[list[Form]]) -> Iterator[Form]:
+    """The forms of these rows, and those in them."""
+    stack = [form for row in lists for form in row]
+    while stack:
+        form = stack.pop()
+        yield form
+        stack += form.children
 
 
 def to_forms(forms: Iterable[Element]) -> list[Form]:

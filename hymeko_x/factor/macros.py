@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.factor.find import family_of
 from hymeko_x.factor.flat import Form, OpenMacro
 from hymeko_x.factor.forms import Hole, Signed
+from hymeko_x.factor.words import limb_of_most
 
 if TYPE_CHECKING:
     from collections.abc import Container
@@ -147,6 +148,9 @@ def _replace(workspace: Workspace, flat: Flat, calls: dict[int, Form], gone: set
 # ---- names --------------------------------------------------------------------------------------------------------------------
 
 _SIGNS = ("side", "front", "flip")
+_PREFIX = "prefix"
+_FEWEST_OF_LIMB = 3
+"""A limb has more parts with names than that."""
 
 
 class Namer:
@@ -187,7 +191,7 @@ class Namer:
         text = self._family.unified.texts[column]
         if leaf == self._dialect.name and isinstance(text, tuple) and len(text) > 1:
             place = text.index(Hole(str(number)))
-            return ["prefix"] if place == 0 else ["suffix"] if place == len(text) - 1 else ["part"]
+            return [_PREFIX] if place == 0 else ["suffix"] if place == len(text) - 1 else ["part"]
         if leaf == self._dialect.name and form is self._forms[0]:
             return ["name"]
         wish = leaf if form.is_call else self._dialect.leaf_name(form.tag, leaf)
@@ -204,8 +208,12 @@ class Namer:
         if hints:
             return [identifier(hints.most_common(1)[0][0])]
         if len(tops) == 1:
-            return [identifier("_".join([*shared[0], tops[0].tag])), identifier(tops[0].tag)]
+            content = _content(tops[0])
+            other = [identifier(f"{content}_{tops[0].tag}")] if content else []
+            return [identifier("_".join([*shared[0], tops[0].tag])), *other, identifier(tops[0].tag)]
         named = [words for words in shared if words]
+        if (part := limb_of_most(["_".join(words) for words in named])) and len(named) > _FEWEST_OF_LIMB:
+            return [part]
         if not named:
             return [identifier(f"{self._around}_parts" if self._around else f"{tops[0].tag}_group")]
         common = [word for word in named[0] if all(word in words for words in named)]
@@ -217,12 +225,19 @@ class Namer:
     def _words(self, place: int) -> list[str]:
         """The words of a form's name that all instances share."""
         form = self._forms[place]
-        if self._dialect.name not in form.leaves or form.is_call:
+        named = next((leaf for leaf in (self._dialect.name, _PREFIX) if leaf in form.leaves), None)
+        if named is None:
             return []
         start = sum(len(earlier.leaves) for earlier in self._forms[:place])
-        text: Text = self._family.unified.texts[start + form.leaves.index(self._dialect.name)]
+        text: Text = self._family.unified.texts[start + form.leaves.index(named)]
         pieces = [text] if isinstance(text, str) else [piece for piece in text if isinstance(piece, str)]
         return [word.lower() for piece in pieces for word in re.findall(r"[A-Za-z][A-Za-z0-9]*", piece)][:3]
+
+
+def _content(form: Form) -> str:
+    """The tag of what a form is about: that of the only child of a form without texts of its own; empty for none."""
+    inside = [child.children[0].tag for child in form.children if not child.leaves and len(child.children) == 1]
+    return inside[0] if len(inside) == 1 else ""
 
 
 def identifier(text: str) -> str:

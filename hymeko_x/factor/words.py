@@ -42,6 +42,12 @@ def limb(names: Iterable[str]) -> str:
     return limbs.pop() if len(limbs) == 1 else ""
 
 
+def limb_of_most(names: Sequence[str]) -> str:
+    """The limb of which more than half of these names have a part, if none is of another one; empty otherwise."""
+    limbs = Counter(found for name in names if (found := limb([name])))
+    return next(iter(limbs)) if len(limbs) == 1 and 2 * limbs.total() > len(names) else ""
+
+
 _LEFT = frozenset(["left", "l", "fl", "rl", "hl", "bl", "ml", "lf", "lr", "lh", "lb", "lm"])
 _RIGHT = frozenset(["right", "r", "fr", "rr", "hr", "br", "mr", "rf", "rh", "rb", "rm"])
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
+from hymeko_x.backends.xacro.spelling import CONSTANTS
 from hymeko_x.factor import Dialect
 from hymeko_x.factor.forms import Element
 from hymeko_x.formats.xacro import PREFIX, TAKEN, survives
@@ -62,10 +64,19 @@ def top_level(elements: Iterable[Tag | str], mechanism: Mechanism) -> tuple[list
 
 def _form(tag: Tag, hint: str) -> Element:
     """A tag with everything in it. URDF's own tags are a few levels deep; foreign text is parsed without recursion."""
-    made = _Open(tag.name, tuple(tag.attributes.items()), hint)
+    made = _Open(tag.name, tuple([(name, _as_xacro_prints(name, text)) for name, text in tag.attributes.items()]), hint)
     for child in tag.children:
         made.kids += _parsed(child) if isinstance(child, str) else [_form(child, "")]
     return made.closed()
+
+
+_WORDS = frozenset(("name", "link", "joint", "filename"))
+_SMALL = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?e-)([1-9])(?!\S)")
+
+
+def _as_xacro_prints(name: str, text: str) -> str:
+    """A text with its small numbers as Python prints them (``2e-06``): parameters with other texts would have to be quoted."""
+    return text if name in _WORDS or "e-" not in text else _SMALL.sub(r"\g<1>0\2", text)
 
 
 def _parsed(text: str) -> list[Element]:
@@ -128,8 +139,8 @@ def can_be_default(text: str) -> bool:
 
 
 def can_be_value(text: str) -> bool:
-    """Whether a text can be that of a property, which xacro evaluates again wherever it is used."""
-    return survives(text) and not set(text) & set("'\"$\n\r\t")
+    """Whether a text can be that of a property, which xacro evaluates again wherever it is used; ``${pi/2}`` is its own name."""
+    return survives(text) and not set(text) & set("'\"$\n\r\t") and text.removeprefix("-") not in CONSTANTS
 
 
 _LEAVES = {"xyz": "xyz", "rpy": "rpy", "value": "", "name": "", "link": "", "rgba": "rgba", "filename": "mesh"}

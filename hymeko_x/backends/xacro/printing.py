@@ -29,6 +29,8 @@ def print_file(document: Document, factored: Factored, remarks: Placed, included
     else:
         page.lines.append(f'{_INDENT}<xacro:include filename="{included}"/>')
     page.heading("The robot", factored.macros and factored.items)
+    if included is None and (factored.macros or factored.values) and not isinstance(factored.items[0], Call):
+        page.lines.append("")
     page.body("", factored.items, 1)
     return page.lines
 
