@@ -6,6 +6,7 @@ import json
 import os
 import posixpath
 import re
+from hashlib import sha256
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
@@ -48,6 +49,14 @@ def folder_with_room(folder: str, uri: str, path: str, shelf: Shelf, files: File
         number += 1
         found = f"{folder}/{number}"
     return found
+
+
+def variant(uri: str, path: str, other: str | None, files: Files) -> str:
+    """What tells a mesh file from one with the same bytes at another place: a digest of its companions where these differ, else nothing."""
+    if other is None or other == path or suffix_of(path) not in WITH_COMPANIONS:
+        return ""
+    own, others = ({name: files.read(there) for name, there in companions_of(*at, files)} for at in ((uri, path), (other, other)))
+    return "" if own == others else sha256(b"\0".join(part for name in sorted(own) for part in (name.encode(), own[name]))).hexdigest()
 
 
 def _is_occupied(place: str, source: str, shelf: Shelf, files: Files) -> bool:

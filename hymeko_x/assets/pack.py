@@ -18,7 +18,7 @@ from msgspec import field
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats
-from hymeko_x.assets.companions import copy_companions, folder_with_room
+from hymeko_x.assets.companions import copy_companions, folder_with_room, variant
 from hymeko_x.assets.resolve import is_of_nameless_package
 from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir.builder import Builder
@@ -177,7 +177,9 @@ def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep, *, mo
     found = read_file(files, uri)
     if found is None:
         return None
-    return shelf.copy(folder_with_room(folder, uri, path, shelf, files), file_stem(uri), suffix_of(path), *found)
+    stem, suffix = file_stem(uri), suffix_of(path)
+    known = shelf.copies.get(shelf.known(stem, suffix, found[1]) or "")
+    return shelf.copy(folder_with_room(folder, uri, path, shelf, files), stem, suffix, *found, variant(uri, path, known, files))
 
 
 def _stays(uri: str, shelf: Shelf, files: Files) -> bool:

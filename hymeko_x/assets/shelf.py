@@ -46,11 +46,14 @@ class Shelf:
             self.files[path] = data
         return path
 
-    def copy(self, folder: str, stem: str, suffix: str, source: str, data: bytes) -> str:
-        """Let the file ``source`` be copied there; in reference mode just the way from the output to it."""
+    def copy(self, folder: str, stem: str, suffix: str, source: str, data: bytes, variant: str = "") -> str:
+        """Let the file ``source`` be copied there; in reference mode just the way from the output to it.
+
+        Equal content of one name is copied once for each ``variant``.
+        """
         if self.mode == "reference":
             return self.way_to(source)
-        path, new = self._name(folder, stem, suffix, data)
+        path, new = self._name(folder, stem, suffix, data, variant)
         if new:
             self.copies[path] = source
         return path
@@ -90,11 +93,13 @@ class Shelf:
         except ValueError:  # another drive
             return source
 
-    def _name(self, folder: str, stem: str, suffix: str, data: bytes) -> tuple[str, bool]:
-        """The path for this content, and whether the content is new."""
-        from hashlib import sha256
+    def known(self, stem: str, suffix: str, data: bytes) -> str | None:
+        """The path at which this content of one name is already."""
+        return self._by_content.get(_key(stem, suffix, data))
 
-        key = (safe_name(stem) + suffix, sha256(data).hexdigest())
+    def _name(self, folder: str, stem: str, suffix: str, data: bytes, variant: str = "") -> tuple[str, bool]:
+        """The path for this content, and whether the content is new."""
+        key = _key(stem, suffix, data, variant)
         if key in self._by_content:
             return self._by_content[key], False
         start = f"{self.within}{folder}/"
@@ -103,6 +108,13 @@ class Shelf:
         self._taken.add(path.lower())
         self._by_content[key] = path
         return path, True
+
+
+def _key(stem: str, suffix: str, data: bytes, variant: str = "") -> tuple[str, str]:
+    """What stored files are told apart by: their name and their content."""
+    from hashlib import sha256
+
+    return safe_name(stem) + suffix, sha256(data).hexdigest() + variant
 
 
 def safe_name(name: str) -> str:

@@ -70,8 +70,9 @@ def test_what_lies_outside_of_the_output_is_not_written(tmp_path: Path) -> None:
     assert sorted(path.name for path in (tmp_path / "out").rglob("*") if path.is_file()) == ["part.obj", "r.urdf"]
 
 
+@pytest.mark.parametrize("comment", ["# back\n", ""], ids=["two meshes", "one mesh twice"])
 @pytest.mark.parametrize("target", ["r.urdf", "r.sdf", "r.hymeko"])
-def test_libraries_of_one_name_stay_with_their_meshes(target: str, tmp_path: Path) -> None:
+def test_libraries_of_one_name_stay_with_their_meshes(target: str, comment: str, tmp_path: Path) -> None:
     home = tmp_path / "home"
     for folder, grey in (("front", 77), ("back", 144)):
         (home / folder).mkdir(parents=True)
@@ -80,7 +81,7 @@ def test_libraries_of_one_name_stay_with_their_meshes(target: str, tmp_path: Pat
         (home / folder / "skin.png").write_bytes(png(grey))
     second = '<visual><geometry><mesh filename="back/part.obj"/></geometry></visual></link>'
     (home / "r.urdf").write_text(URDF.format("front/part.obj").replace("</link>", second))
-    (home / "back" / "part.obj").write_text(OBJ + "# back\n")
+    (home / "back" / "part.obj").write_text(OBJ + comment)
     (tmp_path / "away").mkdir()
     hx.convert(home / "r.urdf", tmp_path / "away" / target, assets="copy")
     home.rename(tmp_path / "gone")
