@@ -112,13 +112,11 @@ def keep_references(
     keep: Keep,
     layout: Layout | None = None,
     *,
-    with_companions: bool = True,
     models: bool = True,
 ) -> Mechanism:
     """The mechanism with every uri kept or rewritten; a file that is not there keeps its uri, with a warning.
 
-    Files that meshes refer to go along, unless the target's programs never look at them. ``models``: whether the target's programs find
-    ``model://NAME``.
+    Files that meshes refer to go along. ``models``: whether the target's programs find ``model://NAME``.
     """
     folders = _FOLDERS if layout is None else {**_FOLDERS, Texture: layout.textures}
     changed: dict[Id, Mesh | Texture] = {}
@@ -138,7 +136,7 @@ def keep_references(
         if uri != part.uri:
             changed[key] = replace(part, uri=uri)
         place = place_of(uri)
-        if with_companions and isinstance(part, Mesh) and place in shelf.copies:
+        if isinstance(part, Mesh) and place in shelf.copies:
             copy_companions(part.uri, place, shelf.copies[place], shelf, files)
     return mechanism.replace(vertices=changed)
 

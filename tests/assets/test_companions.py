@@ -60,6 +60,22 @@ def test_materials_and_images_of_a_mesh_file_go_along(target: str, tmp_path: Pat
     assert (image.size, image.convert("RGB").getpixel((0, 0))) == ((2, 2), (77, 77, 77))
 
 
+@pytest.mark.parametrize("target", ["r.urdf", "r.usda", "r.sdf", "r.hymeko", "r.xml"])
+def test_libraries_come_home_to_mjcf_whose_engine_passes_them_over(target: str, tmp_path: Path) -> None:
+    for folder in ("home/meshes", "away", "back"):
+        (tmp_path / folder).mkdir(parents=True)
+    mesh = '<compiler meshdir="meshes"/><asset><mesh file="part.obj"/></asset>'
+    body = '<body name="a"><joint/><geom type="mesh" mesh="part"/></body>'
+    (tmp_path / "home" / "r.xml").write_text(f'<mujoco model="r">{mesh}<worldbody>{body}</worldbody></mujoco>')
+    (tmp_path / "home" / "meshes" / "part.obj").write_text(OBJ)
+    (tmp_path / "home" / "meshes" / "part.mtl").write_text("newmtl skin\nmap_Kd skin.png\n")
+    (tmp_path / "home" / "meshes" / "skin.png").write_bytes(png(77))
+    hx.convert(tmp_path / "home" / "r.xml", tmp_path / "away" / target, keep="beside", assets="copy")
+    (tmp_path / "home").rename(tmp_path / "gone")
+    hx.convert(tmp_path / "away" / target, tmp_path / "back" / "r.xml")
+    assert sorted(path.name for path in (tmp_path / "back" / "meshes").iterdir()) == ["part.mtl", "part.obj", "skin.png"]
+
+
 def test_what_lies_outside_of_the_output_is_not_written(tmp_path: Path) -> None:
     for folder in ("home", "out/away"):
         (tmp_path / folder).mkdir(parents=True)

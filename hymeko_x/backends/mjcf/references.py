@@ -38,7 +38,7 @@ def pack_native(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report
     """
     from hymeko_x.backends.mjcf.meshes import with_points_as_files
 
-    packed = keep_references(mechanism, shelf, files, report, Keep.PACKAGES_AND_PATHS, with_companions=False)
+    packed = keep_references(mechanism, shelf, files, report, Keep.PACKAGES_AND_PATHS)
     packed = with_points_as_files(_with_mended_files(mechanism, packed, shelf, files, report), shelf)
     return place_extras(mechanism, packed, shelf, files, report, Keep.PACKAGES_AND_PATHS, is_native=True)
 
