@@ -222,7 +222,8 @@ def _check_inertia(found: _Findings) -> None:
         view = mechanism.parent_joint.get(key)
         if view is not None and view.joint.dofs and _group_mass(mechanism, key) < LEAST_MASS:
             message = f"{key} moves and has no mass, nor has anything that is fixed to it"
-            found.error(codes.NO_INERTIA, key, message, "give it a mass and an inertia tensor")
+            ways = "; `check --fix --density 1000` computes them from its shapes" if mechanism.shapes.get(key) else ""
+            found.error(codes.NO_INERTIA, key, message, f"give it a mass and an inertia tensor{ways}")
 
 
 def _group_mass(mechanism: Mechanism, top: Id) -> float:

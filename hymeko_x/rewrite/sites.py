@@ -41,7 +41,8 @@ def make_frames_links(mechanism: Mechanism, report: Report, reason: str) -> Mech
         if view.thing in origins:
             origins[body] = origins[view.thing]
     shown = listed([f"'{view.thing.name}'" for view in chosen], _SHOWN)
-    message = f"{counted(len(chosen), 'site')} written as links with fixed joints ({reason}): {shown}"
+    how = "written as a link with a fixed joint" if len(chosen) == 1 else "written as links with fixed joints"
+    message = f"{counted(len(chosen), 'site')} {how} ({reason}): {shown}"
     report.note(codes.FOR_TARGET, message, element=str(chosen[0].thing))
     return replace(mechanism.replace(vertices=bodies, edges=edges), origins=origins)
 
