@@ -156,11 +156,15 @@ def _steps(view: JointView, *, keeps_balls: bool) -> tuple[list[_Step], Pose]:
 
 
 def _singles(dof: Dof, name: str) -> list[Dof]:
-    """The dof itself, or three hinges for a ball of this name; their damping and friction are those of the ball."""
+    """The dof itself, or three hinges for a ball of this name; their damping and friction are those of the ball.
+
+    The last one of a ball without a name of its own has none either, so that it keeps that of the joint where it can.
+    """
     if dof.kind is not DofKind.BALL:
         return [dof]
     same = replace(dof, kind=DofKind.HINGE, limits=UNLIMITED, written=None)
-    return [replace(same, axis=axis, name=f"{name}_{letter}") for axis, letter in ((X, "x"), (Y, "y"), (Z, "z"))]
+    names = (f"{name}_x", f"{name}_y", f"{name}_z" if dof.name else None)
+    return [replace(same, axis=axis, name=own) for axis, own in zip((X, Y, Z), names, strict=True)]
 
 
 def _moved_by(dof: Dof, coordinate: float) -> Pose:

@@ -277,10 +277,10 @@ def test_the_joints_of_one_body_have_commands_poses_and_come_back(tmp_path: Path
     system, srdf = etree.parse(str(urdf)).find("ros2_control"), srdf_of(urdf)
     starts = {node.get("name"): node.findtext("state_interface[@name='position']/param") for node in system.findall("joint")}
     quarter = "1.5707963267948966"
-    assert starts == {"lift": "0.5", "turn": "-0.25", "elbow": "0.75", "wrist_x": quarter, "wrist_y": None, "wrist_z": quarter}
+    assert starts == {"lift": "0.5", "turn": "-0.25", "elbow": "0.75", "wrist_x": quarter, "wrist_y": None, "wrist": quarter}
     assert system.findtext("gpio/param[@name='joints']") == "turn elbow"
     assert [node.get("name") for node in srdf.find("group")] == ["lift", "turn", "elbow"]
-    assert [node.get("name") for node in srdf.findall("passive_joint")] == ["wrist_x", "wrist_y", "wrist_z"]
+    assert [node.get("name") for node in srdf.findall("passive_joint")] == ["wrist_x", "wrist_y", "wrist"]
     state = {node.get("name"): float(node.get("value")) for node in srdf.find("group_state")}
     assert [state[name] for name in ("lift", "turn", "elbow")] == [0.5, -0.25, 0.75]
     hx.convert(urdf, tmp_path / "back.xml", target="mujoco")

@@ -77,7 +77,7 @@ def test_a_loop_that_only_the_second_robot_has_is_a_difference(pair: tuple[Path,
 @pytest.mark.parametrize(
     ("path", "to", "check"),
     [
-        ("//joint[@name='world_body#2_2']/dynamics/@damping", "0.3", "damping"),
+        ("//joint[@name='world_body#2_x']/dynamics/@damping", "0.3", "damping"),
         ("//joint[@name='y']/axis/@xyz", "0 1 0", "forward kinematics, rotation"),
         ("//link[@name='world_body#4']/inertial/mass/@value", "1", "mass"),
         ("//joint[@name='follower']/mimic/@multiplier", "3", "coupled coordinates"),
