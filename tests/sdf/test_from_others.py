@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import hymeko_x as hx
+from tests.sdf.samples import AXIS, model
 
 BALL = '<geom type="sphere" size=".1"/>'
 UNNAMED_BODIES = f"""<mujoco model="m"><worldbody><body><joint type="slide"/>{BALL}<body pos="1 0 0"><joint type="hinge"/>{BALL}</body></body>
@@ -72,6 +73,38 @@ def test_drake_sees_the_same_robot(case: str, tmp_path: Path) -> None:
     hx.convert(str(tmp_path / name), str(tmp_path / "out.sdf"))
     verdict = hx.verify(str(tmp_path / name), str(tmp_path / "out.sdf"), samples=20)
     assert verdict.verdict == expected, [*verdict.failed, *verdict.limits, verdict.reason]
+
+
+@pytest.mark.unread("HX028", "HX101", "HX103")
+@pytest.mark.parametrize("target", ["back.xml", "back.usda", "back.urdf"])
+def test_the_link_of_a_closure_stays_in_sdf(target: str, tmp_path: Path) -> None:
+    """`again_anchor`, of which SDF needs one: it was a body of the other formats, and `verify` called them another robot."""
+    (tmp_path / "m.xml").write_text(CLOSURES, "utf-8")
+    hx.convert(tmp_path / "m.xml", tmp_path / "m.sdf")
+    assert "again_anchor" in (tmp_path / "m.sdf").read_text("utf-8")
+    hx.convert(tmp_path / "m.sdf", tmp_path / target)
+    assert "again_anchor" not in (tmp_path / target).read_text("utf-8")
+    pytest.importorskip("pydrake")
+    assert hx.verify(tmp_path / "m.sdf", tmp_path / target, samples=5).is_same
+
+
+@pytest.mark.unread("HX045")
+@pytest.mark.parametrize("changed", ["<mass>1</mass>", '<visual name="v"/>'])
+def test_a_link_that_is_more_than_the_end_of_a_closure_stays(changed: str, tmp_path: Path) -> None:
+    link = "<link name='{}'><inertial><mass>{}</mass></inertial>{}</link>"
+    mass, inside = ("1", "") if "mass" in changed else ("1e-10", changed)
+    ends = "<joint name='{}' type='{}'><parent>{}</parent><child>{}</child>{}</joint>"
+    joints = [
+        ("j", "revolute", "a", "b", AXIS.format("")),
+        ("l_anchor_joint", "fixed", "a", "l_anchor", ""),
+        ("l", "ball", "l_anchor", "b", ""),
+    ]
+    text = "".join(
+        [link.format("a", 1, ""), link.format("b", 1, ""), link.format("l_anchor", mass, inside), *(ends.format(*each) for each in joints)]
+    )
+    (tmp_path / "m.sdf").write_text(model(text), "utf-8")
+    hx.convert(tmp_path / "m.sdf", tmp_path / "m.xml", lenient=True)
+    assert 'name="l_anchor"' in (tmp_path / "m.xml").read_text("utf-8")
 
 
 @pytest.mark.unread("HX101")

@@ -1,4 +1,4 @@
-"""Static models, for other formats: nothing in them moves, whatever joints they have."""
+"""What other formats need to know of a robot from SDF: nothing in static models moves, and closures join the links themselves."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from hymeko_x import codes
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.values import TRUTH, BadText
+from hymeko_x.frontends.sdf.anchors import without_anchors
 from hymeko_x.ir.mechanism import ROOT, Id
 from hymeko_x.ir.parts import Frame, Joint
 
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
 
 
 def complete(mechanism: Mechanism, _printed: Callable[[], tuple[Mechanism, bytes]], _files: Files, report: Report) -> Mechanism:
-    """The mechanism in which the joints of static models are fixed, as simulators of SDF hold them."""
+    """The mechanism in which joints of static models are fixed, as simulators of SDF hold them, and closures have no links of their own."""
+    mechanism = without_anchors(mechanism)
     static = _static_scopes(mechanism)
     edges: dict[Id, RobotEdge] = {}
     for key, view in mechanism.joints.items() if static else ():
