@@ -46,18 +46,25 @@ def complete(summaries: Mapping[str, str], parser_of: Callable[[str], argparse.A
     parser = argparse.ArgumentParser("hymeko-x", allow_abbrev=False)
     verbs = parser.add_subparsers(metavar="VERB")
     for name, summary in summaries.items():
-        known = [_with_formats(parser_of(name))] if name == verb else []
+        known = [_with_choices(parser_of(name))] if name == verb else []
         verbs.add_parser(name, help=summary, parents=known, add_help=False, allow_abbrev=False)
     autocomplete(parser, always_complete_options="long")
 
 
-def _with_formats(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
-    """The parser, with the names of the formats for each option that takes one."""
+def _with_choices(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
+    """The parser, with the names of formats, targets and codes for each argument that takes one."""
     from argcomplete.completers import ChoicesCompleter
 
+    from hymeko_x.codes import CODES
     from hymeko_x.formats import FORMATS
+    from hymeko_x.targets import TARGETS
 
+    choices = {
+        "FORMAT": {row.name: row.title for row in FORMATS},
+        "TARGET": {target.name: target.title for target in TARGETS},
+        "CODE": {code.id: code.title for code in CODES.values()},
+    }
     for action in parser._actions:
-        if action.metavar == "FORMAT":
-            action.completer = ChoicesCompleter({row.name: row.title for row in FORMATS})  # type: ignore[attr-defined]
+        if isinstance(action.metavar, str) and action.metavar in choices:
+            action.completer = ChoicesCompleter(choices[action.metavar])  # type: ignore[attr-defined]
     return parser

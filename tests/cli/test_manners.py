@@ -11,6 +11,7 @@ import pytest
 
 from hymeko_x.cli import VERBS, exits, main, parser_of
 from hymeko_x.cli.terminal import is_coloured
+from hymeko_x.codes import CODES
 
 ROOT = Path(__file__).parents[2]
 ARM = """<robot name="arm"><link name="base"/><link name="tip"/>
@@ -77,6 +78,8 @@ def test_colours_can_be_forced_and_forbidden(folder: Path, capsys: pytest.Captur
         ("hymeko-x convert --to mj", {"mjcf"}),
         ("hymeko-x corpus st", {"stats"}),
         ("hymeko-x convert --base ", {"fixed", "free"}),
+        ("hymeko-x convert arm.urdf --for mj", {"mjx"}),
+        ("hymeko-x explain HX04", {f"HX04{digit}" for digit in range(10) if f"HX04{digit}" in CODES}),
         ("hymeko-x verify ar", {"arm.urdf"}),
     ],
 )
