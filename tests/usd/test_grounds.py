@@ -25,9 +25,13 @@ def problems(path: Path) -> list[str]:
     return [error.GetName() for error in UsdValidation.ValidationContext(validators).Validate(stage)]
 
 
+@pytest.mark.unread("HX104")
 @pytest.mark.parametrize(("stands", "expected"), [("true", []), ("false", ["ColliderPlaneDynamic"])])
 def test_the_validators_accept_a_world_with_a_floor(tmp_path: Path, stands: str, expected: list[str]) -> None:
     (tmp_path / "w.sdf").write_text(WORLD.format(stands), "utf-8")
-    hx.convert(tmp_path / "w.sdf", tmp_path / "w.usda")
+    found = hx.convert(tmp_path / "w.sdf", tmp_path / "w.usda").report.diagnostics
+    assert [str(diagnostic.element) for diagnostic in found if diagnostic.code.id == "HX104"] == ["shape 'ground::link/collision'"] * len(
+        expected
+    )
     assert problems(tmp_path / "w.usda") == expected
     assert hx.verify(hx.load(tmp_path / "w.sdf").mechanism, tmp_path / "w.usda", samples=2).is_same

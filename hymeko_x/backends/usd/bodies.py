@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Vt
 
+from hymeko_x.backends.usd.grounds import grounds
 from hymeko_x.backends.usd.shapes import gprim_of, gprim_pose
 from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.kinematics import reference_poses
 from hymeko_x.ir.mechanism import WORLD
-from hymeko_x.ir.parts import Body, Mesh, Plane, Role, Shape
+from hymeko_x.ir.parts import Body, Mesh
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle
 from hymeko_x.rewrite.decimals import clean_pose
 
@@ -33,7 +34,7 @@ def write_bodies(sheet: UsdSheet) -> None:
     poses = reference_poses(sheet.mechanism)
     note_body_shapes(sheet)
     placed: set[Any] = set()
-    kinematic = _grounds(sheet.mechanism)
+    kinematic = grounds(sheet.mechanism)
     for key in _parents_first(sheet.mechanism) if sheet.is_nested else [key for key, _ in sheet.mechanism.vertices(Body)]:
         spec = _place_nested(sheet, key) if sheet.is_nested else sheet.add_prim(key, sheet.root, "Xform")
         placed.add(spec.path)
@@ -51,19 +52,6 @@ def write_bodies(sheet: UsdSheet) -> None:
             continue
         is_inside = any(prefix in placed for prefix in path.GetParentPath().GetPrefixes())
         transform(spec, pose, sheet.body_scales.get(key), reset=is_inside)
-
-
-def _grounds(mechanism: Mechanism) -> set[Id]:
-    """The bodies that stand and have a plane that collides, which USD allows on kinematic bodies alone."""
-    planes = {
-        arcs[0].target for _, shape, arcs in mechanism.edges(Shape) if isinstance(shape.geometry, Plane) and shape.role is Role.COLLISION
-    }
-    standing = {WORLD}
-    for body in mechanism.depth_first() if planes else ():
-        above = mechanism.parent_joint.get(body)
-        if above is not None and not above.joint.dofs and above.parent in standing:
-            standing.add(body)
-    return planes & standing
 
 
 def _write_body(sheet: UsdSheet, spec: Any, key: Id) -> None:

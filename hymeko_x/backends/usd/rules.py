@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.backends.usd.grounds import report_planes_that_move
 from hymeko_x.formats.usd.contacts import GROUP, GROUPED, GROUPS, pairs_digest
 from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Contact, Loop
@@ -65,4 +66,5 @@ RULES: tuple[Rule, ...] = (
     drive_by_differentials,
     drop_stale_groups,
     drop_unused_assets,
+    report_planes_that_move,
 )
