@@ -247,15 +247,27 @@ def _one_root(header: str, roots: list[Node]) -> tuple[str, list[Node]]:
     used = {ref.path[0] for node in others for ref in (*node.uses, *(kind.ref for kind in node.stereotypes))}
     libraries = [node for node in roots if node.name in used]
     rest = [node for node in roots if node not in libraries]
-    is_description = len(rest) > 1 and rest[0] is first and all(isinstance(item, _DESCRIBING) for item in first.items)
+    is_description = len(rest) > 1 and rest[0] is first and _describes(first)
     described = rest[1:] if is_description else rest
     if len(described) != 1 or not any(isinstance(item, Node) for item in described[0].items):
         return header, roots
     root = described[0]
-    if is_description and any(isinstance(item, Field) for item in first.items):
-        data = first._replace(items=tuple(item for item in first.items if isinstance(item, Field | Comment)))
+    if is_description and any(isinstance(item, Field | Node) for item in first.items):
+        data = first._replace(items=tuple(item for item in first.items if isinstance(item, Field | Node | Comment)))
         root = root._replace(items=(data, *root.items))
     return header, [root]
+
+
+def _describes(node: Node) -> bool:
+    """Whether a block before the root holds fields and imports alone; one with imports or names for paths may hold blocks of fields."""
+    has_imports = any(isinstance(item, Import | Using) for item in node.items)
+    return all(isinstance(item, _DESCRIBING) or (has_imports and _is_data(item)) for item in node.items)
+
+
+def _is_data(item: Item) -> bool:
+    if not isinstance(item, Node) or item.edge or item.stereotypes or item.uses:
+        return False
+    return all(isinstance(inner, Field | Comment) for inner in item.items)
 
 
 _DESCRIBING = (Field, Import, Using, Comment)

@@ -50,7 +50,7 @@ _ITEMS = (
 _SIGNATURE = ("signature", "stereotypes", "stereotype", "use", "parameters", "parameter", "arguments", "argument")
 _RULES = ("start", "block", "group_arc", "ref", "path", "relation", "vector", "type", *_SIGNATURE)
 _OPENING, _CLOSING = frozenset("{[("), frozenset("}])")
-_TIGHT_BEFORE = frozenset({",", ")", "]", ".", "="})
+_TIGHT_BEFORE = frozenset({",", ";", ")", "]", ".", "="})
 _TIGHT_AFTER = frozenset({"(", "[", ".", "=", "@"})
 _SIGNS = frozenset({"DIRECTION", "MODIFIER"})
 _COMMENTS = frozenset({"LINE_COMMENT", "BLOCK_COMMENT"})

@@ -116,6 +116,15 @@ def load(path: Path) -> Mechanism:
     return found
 
 
+def test_a_description_may_have_blocks_of_data_beside_its_imports(folder: Path) -> None:
+    text = SECOND.replace("    const RADIUS", '    about { author "me"; year 2026; }\n    const RADIUS', 1)
+    assert "about" in text
+    (folder / "second.hymeko").write_text(text)
+    robot = load(folder / "second.hymeko")
+    assert [key.name for key, _ in robot.vertices(parts.Body)] == ["base", "arm", "slider"]
+    assert dict(robot.vertex(Id("datum", "spinner_description.about"), parts.Datum).parameters) == {"author": "me", "year": 2026.0}
+
+
 def test_a_robot_of_an_imported_meta_model(folder: Path) -> None:
     robot = load(folder / "first.hymeko")
     j0, j1, holder = (robot.joints[Id("joint", name)] for name in ("j0", "j1", "holder"))

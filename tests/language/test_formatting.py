@@ -112,6 +112,8 @@ LAYOUTS = {
         "a { x [1, 2, 3] y=-Z [1] + b, leg(h, r=0.1) : link {} @j : fixed {} }\n"
     ),
     "a { x [1 2\n 3 4\n] }": "a {\n  x [1 2\n    3 4\n  ]\n}\n",
+    "a {mass 2 ;b{x 1;}\nc{};}": "a {\n  mass 2; b { x 1; }\n  c {};\n}\n",
+    "a{const K=g\n;}": "a {\n  const K=g\n    ;\n}\n",
     "a{v[1\n,2](+e,-b)}": "a {\n  v [1, 2] (+ e, - b)\n}\n",
     "a {\n\n\n  b {}\n\n\n  c {}\n\n}": "a {\n  b {}\n\n  c {}\n}\n",
     "@e{(a - b),(+ c)x(1 + 2)}": "@e { (a - b), (+ c) x (1 + 2) }\n",
