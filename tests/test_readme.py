@@ -58,9 +58,14 @@ def session(text: str, folder: Path) -> str:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_the_session_in_a_page_is_what_really_happens(page: Path, tmp_path: Path) -> None:
+def test_the_session_in_a_page_is_what_really_happens(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = page.read_text("utf-8")
     assert session(text, tmp_path) == text
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    for language, name, content in BLOCK.findall(text):
+        if language == "python" and not name:  # those with a name are run by a command
+            exec(compile(content, page.name, "exec"), names)
 
 
 @pytest.mark.corpus
