@@ -164,6 +164,7 @@ USD = Format(
     has_variants=True,
     layout_options=frozenset({"layout", "nested"}),
     pack="hymeko_x.backends.usd.files:pack_for_usd",
+    refits="hymeko_x.formats.usd.articulations:fit_articulation",
     reference="hymeko_x.verify.readers.usd",
     libraries=MappingProxyType({"pxr": "usd"}),
     memory=MappingProxyType({"pxr": "hymeko_x.verify.readers.usd.memory:load"}),

@@ -99,6 +99,9 @@ class Format(Struct, frozen=True):
     """The function ``(changed, source, change, called) -> changed`` by which the named configurations that it keeps as texts fit a
     changed mechanism; ``change(word, element, numbers)`` gives the present id of a joint or an actuator, and its numbers,
     ``called(name)`` the present name of a configuration, None for one that goes."""
+    refits: str | None = None
+    """The function ``(changed, source) -> changed`` by which what it holds of the whole fits a robot whose joints are others (USD: the
+    root of an articulation)."""
     resizes: str | None = None
     """The function ``(mechanism, s, factor) -> mechanism or None`` by which its extras fit lengths times ``s``; ``factor(element, dof)``
     is that on what a joint or a coupling measures. None where the elements have to be flattened first."""

@@ -19,7 +19,7 @@ from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse
 from hymeko_x.joining import held, is_free, moved_state, on_body, shifted, with_names
 from hymeko_x.rewrite.references import names_of
 from hymeko_x.robot.data import RobotData
-from hymeko_x.robot.draft import Draft
+from hymeko_x.robot.draft import Draft, refitted
 from hymeko_x.robot.editing import dofs_of, place
 from hymeko_x.robot.errors import EditError, unknown_name
 from hymeko_x.robot.joining import merged, provenance_of, with_files
@@ -70,7 +70,7 @@ def attach(
     added = part.mechanism if is_native else part.completed
     located, files = with_files(base, pipeline.flattened(added), host.files, part.files)
     standing = _standing(with_names(located, lambda word: prefix + word), body, frame, _dofs(joint), part.name)
-    whole = merged(pipeline.flattened(given), standing, source)
+    whole = refitted(merged(pipeline.flattened(given), standing, source), given)
     states = shifted(part.mechanism, frame) if body == WORLD and frame != IDENTITY else part.mechanism
     return host.changed(_with_states(whole, host.mechanism, states, lambda word: prefix + word), files)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from msgspec.structs import replace
 
+from hymeko_x import formats
 from hymeko_x.ir.graph import Arc, Hypergraph
 from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
@@ -278,7 +279,7 @@ class Draft:
         graph = Hypergraph(_in_order(self.vertices, source.graph.vertices, now), _in_order(self.edges, source.graph.edges, now))
         changed = replace(source, name=source.name if name is None else name, graph=graph)
         if not (now or self._gone):
-            return with_states(changed, source, with_ids(now), self._called)
+            return with_states(refitted(changed, source), source, with_ids(now), self._called)
         changed = replace(
             changed,
             extras=self._kept(source.extras, now),
@@ -289,7 +290,7 @@ class Draft:
             layout=tuple([now.get(key, key) for key in source.layout if key not in self._gone]),
         )
         named = with_references(without_references(changed, frozenset(self._gone_names())), now)
-        return with_states(named, source, with_ids(now), self._called)
+        return with_states(refitted(named, source), source, with_ids(now), self._called)
 
     def _gone_names(self) -> Iterator[Id]:
         """What removed elements are called in their file: their ids, the names of shapes, and those of dofs."""
@@ -317,6 +318,14 @@ _LOSES_ARC = frozenset({("stance", "joint"), ("shape", "material")})
 """The kinds of edges that stay when they lose an element of a kind."""
 _OWNED = {"mount": ("frame", "camera", "light", "sensor"), "drive": ("actuator",), "sense": ("sensor",)}
 """By the kind of an edge, the vertices that go with it when nothing else needs them."""
+
+
+def refitted(changed: Mechanism, source: Mechanism) -> Mechanism:
+    """The changed mechanism, to whose joints each format has fitted what it holds of the whole."""
+    for row in formats.FORMATS:
+        if row.refits is not None and not row.container_of:
+            changed = formats.loaded(row.refits)(changed, source)
+    return changed
 
 
 def _name_of(edge: RobotEdge) -> str | None:

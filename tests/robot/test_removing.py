@@ -113,3 +113,44 @@ def test_what_was_detached_without_a_prefix_goes_back_on_although_both_have_its_
         e.materials["grey"].rgba = (1, 0, 0, 1)
     with pytest.raises(hx.EditError, match="material 'grey' is in robot 'sensed' and in robot 'finger'; give a prefix"):
         rest.attach(e.robot, at="base")
+
+
+# ---- articulations of a stage -----------------------------------------------------------------------------------------------------
+
+ARTICULATED = "PhysicsArticulationRootAPI"
+
+
+def stage(text: str) -> hx.Robot:
+    """A robot as its stage has it."""
+    return hx.loads(hx.dumps(hx.loads(text, "hymeko"), "usd"), "usd")
+
+
+ONE = "one : robot { base { mass 1 inertia [1 1 1] } }"
+TWO = "two : robot { foot { mass 1 inertia [1 1 1] } tip { mass 1 inertia [1 1 1] } @j : revolute { + foot - tip axis=Z } }"
+
+
+def test_a_stage_is_an_articulation_as_long_as_it_has_joints() -> None:
+    two = stage(TWO)
+    with two.edit() as e:
+        e.remove("tip")
+    assert hx.loads(hx.dumps(e.robot, "usd"), "usd").bodies.keys() == {"foot"}
+    assert [ARTICULATED in hx.dumps(robot, "usd") for robot in (two, e.robot, two.subtree("tip"))] == [True, False, False]
+
+
+def test_a_stage_that_gets_its_first_joint_is_an_articulation() -> None:
+    one = stage(ONE)
+    with one.edit() as e:
+        e.add_body("tip", on="base", joint="hinge", axis=(0, 0, 1), mass=1, tensor=(1, 1, 1, 0, 0, 0))
+    whole = one.attach(stage(TWO), at="base", prefix="x/")
+    hinged = one.attach(one, at="base", prefix="x/", joint="hinge")
+    assert [ARTICULATED in hx.dumps(robot, "usd") for robot in (one, e.robot, whole, hinged)] == [False, True, True, True]
+    assert [ARTICULATED in hx.dumps(part, "usd") for part in whole.detach("x/")] == [False, True]
+    assert ARTICULATED not in hx.dumps(one.attach(one, at="base", prefix="x/"), "usd")
+
+
+def test_what_an_author_has_beside_the_api_of_an_articulation_stays() -> None:
+    text = hx.dumps(hx.loads(TWO, "hymeko"), "usd").replace(f'["{ARTICULATED}"]', f'["{ARTICULATED}", "PhysxArticulationAPI"]')
+    with hx.loads(text, "usd").edit() as e:
+        e.remove("tip")
+    written = hx.dumps(e.robot, "usd")
+    assert (ARTICULATED in written, '["PhysxArticulationAPI"]' in written) == (False, True)

@@ -22,6 +22,7 @@ from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import UsdSheet, apply, author, valid_name
 from hymeko_x.backends.usd.tendons import write_tendons
 from hymeko_x.formats import usd as words
+from hymeko_x.formats.usd.articulations import ARTICULATION, BEGUN
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.rewrite.context import Options
 
-_ARTICULATION = "PhysicsArticulationRootAPI"
 _SECTIONS = (
     write_materials,
     write_bodies,
@@ -104,10 +104,11 @@ def _write_stage(sheet: UsdSheet) -> None:
 
 def _write_articulations(sheet: UsdSheet) -> None:
     """The robot's prim is the root of its articulation; several trees have one root each. Those of the source stay."""
-    if any(_ARTICULATION in extra.text for extras in sheet.mechanism.extras.values() for extra in extras if extra.format == words.FORMAT):
+    if any(ARTICULATION in extra.text for extras in sheet.mechanism.extras.values() for extra in extras if extra.format == words.FORMAT):
         return
     roots = sheet.mechanism.roots
-    if sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is not None or not sheet.dofs:
+    is_author = sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is not None and sheet.mechanism.notation(ROOT, BEGUN) is None
+    if is_author or not sheet.dofs:
         return
     for path in [sheet.root] if len(roots) == 1 else [sheet.paths[root] for root in roots if sheet.mechanism.children.get(root)]:
-        apply(sheet.prims[path], _ARTICULATION)
+        apply(sheet.prims[path], ARTICULATION)

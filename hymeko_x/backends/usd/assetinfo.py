@@ -9,8 +9,8 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.backends.usd.sheet import valid_name
 from hymeko_x.formats import usd as words
+from hymeko_x.formats.usd.articulations import ARTICULATION, moves
 from hymeko_x.ir.mechanism import ROOT, Extra
-from hymeko_x.ir.parts import DofKind
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
@@ -23,8 +23,7 @@ _SCENE = 'def PhysicsScene "physicsScene"\n{\n}'
 
 def _root(name: str, mechanism: Mechanism) -> str:
     """The robot's prim with all of its metadata, and with the articulation that the writer makes of a single tree."""
-    moves = any(dof.kind is not DofKind.FREE for view in mechanism.joints.values() for dof in view.joint.dofs)
-    schemas = '    prepend apiSchemas = ["PhysicsArticulationRootAPI"]\n' if moves and len(mechanism.roots) == 1 else ""
+    schemas = f'    prepend apiSchemas = ["{ARTICULATION}"]\n' if moves(mechanism) and len(mechanism.roots) == 1 else ""
     asset = f'    assetInfo = {{\n        string identifier = "{name}"\n        string version = "1.0.0"\n    }}\n'
     shown = mechanism.name.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
     display = f'    displayName = "{shown}"\n' if name != mechanism.name else ""

@@ -15,6 +15,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd.actuators import PRIM as ACTUATOR
+from hymeko_x.formats.usd.articulations import ARTICULATION
 from hymeko_x.formats.usd.joints import TYPES as JOINTS
 from hymeko_x.frontends.usd.actuators import read_actuator, read_drives
 from hymeko_x.frontends.usd.bodies import BODY, ReadShape, read_body, read_mass
@@ -41,8 +42,6 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.source import Source
-
-_ARTICULATION = "PhysicsArticulationRootAPI"
 
 
 def read(source: Source, report: Report) -> Reading:
@@ -135,7 +134,7 @@ def _articulation_roots(prims: list[Prim], joints: list[ReadJoint], builder: Usd
     ends = {joint.prim.path: [end.body for end in joint.ends if end.body != WORLD] for joint in joints}
     roots: list[Id] = []
     for prim in prims:
-        if prim.has_api(_ARTICULATION):
+        if prim.has_api(ARTICULATION):
             roots += [builder.bodies[prim.path]] if prim.path in builder.bodies else ends.get(prim.path, [])[:1]
     return roots
 
