@@ -55,7 +55,8 @@ class Importer:
         source = _with_values(Source(place, data, files, environment=self._source.environment), format, arguments, origin)
         importer = Importer(source, self._report, (*self._chain, place))
         robot = pipeline.read_anyway(replace(source, parts=importer), format, self._report)
-        return _located(pipeline.flattened(pipeline.fully_completed(robot, files, self._report)), files, self._source)
+        whole = pipeline.inlined(pipeline.fully_completed(robot, files, self._report), files)
+        return _located(pipeline.flattened(whole), files, self._source)
 
     def _content(self, path: str, origin: Origin) -> tuple[str, bytes]:
         files = self._source.files

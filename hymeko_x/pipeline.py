@@ -337,6 +337,14 @@ def flattened(mechanism: Mechanism) -> Mechanism:
     return found
 
 
+def inlined(mechanism: Mechanism, files: Files) -> Mechanism:
+    """The mechanism without files that name its elements, which are in its own text then: for elements that get other names."""
+    for row in formats.FORMATS:
+        if row.inlines is not None:
+            mechanism = formats.loaded(row.inlines)(mechanism, files)
+    return mechanism
+
+
 def _contents(copies: Mapping[str, str], files: Files) -> Iterator[tuple[str, bytes]]:
     """The files to copy that are still there."""
     for name, path in copies.items():

@@ -120,6 +120,7 @@ MJCF = Format(
     misfits="hymeko_x.formats.mjcf.lengths:misfits",
     joins="hymeko_x.formats.mjcf.keyframes:joined",
     restates="hymeko_x.formats.mjcf.keyframes:restated",
+    inlines="hymeko_x.backends.mjcf.skins:with_skins_as_elements",
     resizes="hymeko_x.formats.mjcf.sizes:resized",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
     numbers_constraints=True,

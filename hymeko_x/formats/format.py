@@ -99,6 +99,8 @@ class Format(Struct, frozen=True):
     """The function ``(changed, source, change, called) -> changed`` by which the named configurations that it keeps as texts fit a
     changed mechanism; ``change(word, element, numbers)`` gives the present id of a joint or an actuator, and its numbers,
     ``called(name)`` the present name of a configuration, None for one that goes."""
+    inlines: str | None = None
+    """The function ``(mechanism, files) -> mechanism`` that takes files which name elements (skins of MJCF) into its text."""
     refits: str | None = None
     """The function ``(changed, source) -> changed`` by which what it holds of the whole fits a robot whose joints are others (USD: the
     root of an articulation)."""

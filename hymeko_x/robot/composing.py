@@ -68,6 +68,7 @@ def attach(
     is_native = source == host.mechanism.source and formats.native_format(base) is not None
     given = base if is_native else pipeline.fully_completed(base, host.files, Report())
     added = part.mechanism if is_native else part.completed
+    added = pipeline.inlined(added, part.files) if prefix else added
     located, files = with_files(base, pipeline.flattened(added), host.files, part.files)
     standing = _standing(with_names(located, lambda word: prefix + word), body, frame, _dofs(joint), part.name)
     whole = refitted(merged(pipeline.flattened(given), standing, source), given)
@@ -166,7 +167,7 @@ def detach(robot: R, name: str) -> tuple[R, R]:
     named = [body for body in bodies if body.startswith(name)]
     if not name or not named:
         raise unknown_name("body or prefix", name, bodies)
-    whole = robot.mechanism
+    whole = robot.inlined
     rest = Draft(whole, lambda: robot.completed, is_locked=False)
     if name in bodies:
         inside = part_of(whole, below(whole, Id("body", name)))
@@ -221,7 +222,7 @@ def split(robot: R) -> tuple[R, ...]:
 
 def _only(robot: RobotData, inside: set[Id]) -> Draft:
     """The robot without everything else."""
-    draft = Draft(robot.mechanism, lambda: robot.completed, is_locked=False)
+    draft = Draft(robot.inlined, lambda: robot.completed, is_locked=False)
     draft.remove([key for table in (draft.vertices, draft.edges) for key in table if key not in inside])
     return draft
 

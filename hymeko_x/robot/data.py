@@ -45,6 +45,11 @@ class RobotData(Named):
     def _completed(self) -> Mechanism:
         return pipeline.fully_completed(self.mechanism, self.files, Report())
 
+    @cached_property
+    def inlined(self) -> Mechanism:
+        """The mechanism without files that name its elements."""
+        return pipeline.inlined(self.mechanism, self.files)
+
     def changed(self, mechanism: Mechanism, files: Files | None = None) -> Self:
         """A robot of another mechanism, with the files of this one unless others are given."""
         return type(self)(mechanism, self.files if files is None else files)

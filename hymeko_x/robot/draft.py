@@ -272,8 +272,11 @@ class Draft:
 
     # ---- the result ------------------------------------------------------------------------------------------------------
 
-    def finished(self, name: str | None = None) -> Mechanism:
-        """The mechanism with all changes; side tables follow renamed elements and forget removed ones."""
+    def finished(self, name: str | None = None, inlined: Callable[[], Mechanism] | None = None) -> Mechanism:
+        """The mechanism with all changes; side tables follow renamed elements and forget removed ones.
+
+        ``inlined`` gives the mechanism without files that name elements, for when names change.
+        """
         source = self.mechanism
         now = {old: new for new, old in self._was.items() if old not in self._gone}
         graph = Hypergraph(_in_order(self.vertices, source.graph.vertices, now), _in_order(self.edges, source.graph.edges, now))
@@ -282,7 +285,7 @@ class Draft:
             return with_states(refitted(changed, source), source, with_ids(now), self._called)
         changed = replace(
             changed,
-            extras=self._kept(source.extras, now),
+            extras=self._kept((source if inlined is None else inlined()).extras, now),
             origins=self._kept(source.origins, now),
             notations=self._notations(now),
             stereotypes=self._kept(source.stereotypes, now),

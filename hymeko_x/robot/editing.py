@@ -81,7 +81,7 @@ class Editing(Named, Generic[R]):
     @property
     def robot(self) -> R:
         """The robot with all changes so far."""
-        return self._robot.changed(self._draft.finished(self.name))
+        return self._robot.changed(self._draft.finished(self.name, lambda: self._robot.inlined))
 
     # ---- bodies and joints -----------------------------------------------------------------------------------------------
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from hymeko_x import formats
+from hymeko_x import formats, pipeline
 from hymeko_x.ir.parts import Body
 from hymeko_x.ir.tensor import from_tensor, to_tensor
 from hymeko_x.ir.values import IDENTITY
@@ -130,7 +130,7 @@ class Robot(RobotData):
 
         Raises: KeyError for a body to keep that is not there.
         """
-        return self.changed(merge_fixed(self.completed, keep))
+        return self.changed(merge_fixed(pipeline.inlined(self.completed, self.files), keep))
 
     def scaled(self, factor: float) -> Robot:
         """Another size: lengths times the factor, masses times its cube, times as they are; every typed number by its dimension.
@@ -138,7 +138,7 @@ class Robot(RobotData):
         So do margins, gaps and widths of MJCF. Parameters of actuators and sensors, other extras, and what is left to the defaults of an
         engine stay as they are. Raises: EditError unless the factor is positive.
         """
-        return self.changed(scale(self.mechanism, float(factor)))
+        return self.changed(scale(self.inlined, float(factor)))
 
     def mirrored(self, *, names: tuple[str, str] | None = None) -> Robot:
         """The mirror image on the plane y = 0: the same coordinates give mirrored poses. ``names`` are two words, such as left and
@@ -147,7 +147,7 @@ class Robot(RobotData):
         Shapes that are no meshes are symmetric; meshes get a negative scale; the picture of a camera is mirrored left to right.
         Extras stay as they are. Raises: ValueError for names that are not two words.
         """
-        image = mirror(self.mechanism)
+        image = mirror(self.mechanism if names is None else self.inlined)
         return self.changed(image if names is None else with_names(image, swapped(names), is_part=False))
 
     def randomized(self, seed: int, **spreads: float) -> Robot:

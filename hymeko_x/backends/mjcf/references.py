@@ -47,7 +47,7 @@ def place_extras(
     mechanism: Mechanism, packed: Mechanism, shelf: Shelf, files: Files, report: Report, keep: Keep, *, is_native: bool = False
 ) -> Mechanism:
     """The packed mechanism whose extras name files by their new paths; where it is for MuJoCo (native), such as MuJoCo reads."""
-    settings = _settings(mechanism)
+    settings = settings_in(mechanism)
     moved: dict[tuple[str, str], str] = {}
     for key, extra in _with_files(mechanism):
         for _, file in _FILE.findall(_text(extra)):
@@ -108,7 +108,8 @@ def _mended(uri: str, there: str, key: Id, mechanism: Mechanism, shelf: Shelf, f
 # ---- references in extras ------------------------------------------------------------------------------------------------------
 
 
-def _settings(mechanism: Mechanism) -> Settings:
+def settings_in(mechanism: Mechanism) -> Settings:
+    """The settings of the <compiler> elements."""
     compilers = [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.format == NAME and extra.text.startswith("<compiler")]
     return settings_of([parse_text(text).attributes for text in compilers])
 
@@ -123,7 +124,7 @@ def _with_files(mechanism: Mechanism) -> list[tuple[Id, Extra]]:
 
 def files_in_extras(mechanism: Mechanism) -> Iterator[tuple[Id, str]]:
     """The references of the files that extras name: height fields, skins, the sides of textures."""
-    settings = _settings(mechanism)
+    settings = settings_in(mechanism)
     for key, extra in _with_files(mechanism):
         yield from ((key, joined(_folder(key, settings), unescaped(file), settings)) for _, file in _FILE.findall(_text(extra)))
 

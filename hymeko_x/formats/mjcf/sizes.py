@@ -24,12 +24,16 @@ LENGTHS = frozenset({"margin", "gap", "solimp", "solimplimit"})
 _POWERS: Mapping[str, Mapping[str, int]] = MappingProxyType(
     {
         "hfield": {"size": 1},
+        "skin": {"vertex": 1, "inflate": 1},
+        "bone": {"bindpos": 1},
         "statistic": {"extent": 1, "center": 1, "meansize": 1, "meanmass": 3, "meaninertia": 5},
         "compiler": {"settotalmass": 3, "boundmass": 3, "boundinertia": 5},
         **{tag: dict.fromkeys(sorted(LENGTHS), 1) for tag in ("geom", "pair")},
     }
 )
 """By element of the whole, and of default classes, the powers of the factor."""
+_SIGNED = frozenset({"vertex", "bindpos", "center"})
+"""Coordinates, which may be negative."""
 _OF_OTHERS = ("joint", "tendon", "equality")
 """Elements of default classes whose widths may be angles of one element and lengths of another one."""
 _ATTRIBUTE = re.compile(r"(?:joint\[(\d+)\]/)?@(\w+)")
@@ -75,10 +79,10 @@ def _of_element(extra: Extra, key: Id, factor: Callable[[Id, int], float]) -> Ex
 
 
 def _times(name: str, text: str, factor: float) -> str:
-    """The numbers times the factor; -1 means that MuJoCo computes it."""
+    """The numbers times the factor; of what has no sign, -1 means that MuJoCo computes it."""
     words = text.split()
     places = range(2, 3) if name.startswith("solimp") else range(len(words))
     for place in places:
-        if place < len(words) and float(words[place]) >= 0 and factor != 1.0:
+        if place < len(words) and (float(words[place]) >= 0 or name in _SIGNED) and factor != 1.0:
             words[place] = number_text(float(words[place]) * factor)
     return " ".join(words)
