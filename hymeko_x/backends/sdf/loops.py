@@ -31,8 +31,11 @@ def close_loops_by_joints(mechanism: Mechanism, context: Context) -> Mechanism:
     One that holds a free base is that base's joint. Between links that a joint joins already it starts at a link of its own, because
     Drake takes one joint between two links. A closure that is no joint of SDF is left out.
     """
+    closures = [*mechanism.edges(Loop)]
+    if not closures:
+        return mechanism
     closer = _Closer(mechanism, context)
-    for key, loop, arcs in mechanism.edges(Loop):
+    for key, loop, arcs in closures:
         closer.close(key, loop, arcs)
     return closer.result()
 
