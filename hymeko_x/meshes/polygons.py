@@ -20,8 +20,6 @@ _LARGE = re.compile(rb"^[ \t]*f(?:[ \t]+[^\s]+){%d}" % (MOST_CORNERS + 1), re.MU
 _TRIANGLE, _QUADRILATERAL = 3, 4
 _LEAST_CORNER = np.finfo(np.float32).eps
 
-Point = tuple[np.float32, np.float32]
-
 
 def leaves_polygons_out(data: bytes) -> bool:
     """Whether an OBJ file has polygons that MuJoCo leaves out."""
@@ -41,11 +39,11 @@ def cut(points: NDArray[np.float32], sizes: NDArray[Any], corners: NDArray[Any])
         places = cutter(points, starts[numbers], corners)
         tables.append(places)
         owners.append(np.repeat(numbers, len(places) // max(len(numbers), 1)))
-    for number in np.flatnonzero((sizes > _QUADRILATERAL) & (sizes <= MOST_CORNERS)).tolist():
-        start, size = int(starts[number]), int(sizes[number])
-        ears = _ears(points[corners[start : start + size]])
-        tables.append(np.array(ears, dtype=np.intp).reshape(-1, 3) + start)
-        owners.append(np.full(len(ears), number))
+    for size in np.unique(sizes[(sizes > _QUADRILATERAL) & (sizes <= MOST_CORNERS)]).tolist():
+        numbers = np.flatnonzero(sizes == size)
+        ears, whose = _ears(points[corners[starts[numbers, None] + np.arange(size)]])
+        tables.append(ears + starts[numbers[whose], None])
+        owners.append(numbers[whose])
     places, owner = np.concatenate(tables), np.concatenate(owners)
     order = np.argsort(owner, kind="stable")
     return places[order], owner[order]
@@ -68,64 +66,74 @@ def _quadrilaterals(points: NDArray[np.float32], starts: NDArray[np.intp], corne
 # ---- ears ------------------------------------------------------------------------------------------------------------------------
 
 
-def _ears(points: NDArray[np.float32]) -> list[tuple[int, int, int]]:
-    """The triangles of a polygon with more than four corners, by the numbers of its corners; of a tangled one not all."""
-    flat = points[:, _axes(points)]
-    left = list(range(len(flat)))
-    found: list[tuple[int, int, int]] = []
-    at, tries, before = 0, len(left), len(left)
-    while len(left) > _TRIANGLE and tries > 0:
-        count = len(left)
-        at = at - count if at >= count else at
-        tries, before = (count, count) if before != count else (tries - 1, before)
-        ear = [left[(at + step) % count] for step in range(3)]
-        others = (left[(at + step) % count] for step in range(3, count))
-        if _is_reflex(flat[ear]) or any(_is_within(flat[ear], flat[other]) for other in others):
-            at += 1
-            continue
-        found.append((ear[0], ear[1], ear[2]))
-        del left[(at + 1) % count]
-    if len(left) == _TRIANGLE:
-        found.append((left[0], left[1], left[2]))
-    return found
+def _ears(points: NDArray[np.float32]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The triangles of polygons (m, n, 3) with n > 4 corners, by the numbers of their corners, and whose they are; of tangled ones not all.
+
+    All polygons are cut in step: each step looks at one corner of each, and cuts it off where it is an ear.
+    """
+    flat = np.take_along_axis(points, _axes(points)[:, None, :], axis=2)
+    rows = np.arange(len(flat))
+    left = np.tile(np.arange(flat.shape[1]), (len(flat), 1))
+    count = np.full(len(flat), flat.shape[1])
+    at, tries, before = np.zeros_like(count), count.copy(), count.copy()
+    found: list[NDArray[np.intp]] = []
+    owners: list[NDArray[np.intp]] = []
+    while len(rows := rows[(count[rows] > _TRIANGLE) & (tries[rows] > 0)]):
+        counts = count[rows]
+        at[rows] -= np.where(at[rows] >= counts, counts, 0)
+        tries[rows] = np.where(before[rows] != counts, counts, tries[rows] - 1)
+        before[rows] = counts
+        places = (at[rows, None] + np.arange(counts.max())) % counts[:, None]
+        around = left[rows[:, None], places]  # the three corners in question, and behind them the others
+        corners = flat[rows[:, None], around]
+        is_other = np.arange(_TRIANGLE, counts.max()) < counts[:, None]
+        is_ear = ~(_are_reflex(corners[:, :3]) | (_are_within(corners[:, :3], corners[:, 3:]) & is_other).any(axis=1))
+        cut_off = rows[is_ear]
+        found.append(around[is_ear, :3])
+        owners.append(cut_off)
+        kept = np.arange(left.shape[1] - 1)
+        left[cut_off, :-1] = left[cut_off[:, None], kept + (kept >= places[is_ear, 1:2])]
+        count[cut_off] -= 1
+        at[rows[~is_ear]] += 1
+    done = np.flatnonzero(count == _TRIANGLE)
+    return np.concatenate([*found, left[done, :3]]), np.concatenate([*owners, done])
 
 
-def _axes(points: NDArray[np.float32]) -> tuple[int, int]:
-    """The two axes onto which a polygon is laid: across the largest component of its normal at the first corner that is one."""
-    after, last = np.roll(points, -1, axis=0), np.roll(points, -2, axis=0)
+def _axes(points: NDArray[np.float32]) -> NDArray[np.intp]:
+    """The two axes (m, 2) onto which polygons are laid: across the largest component of the normal at the first corner that is one."""
+    after, last = np.roll(points, -1, axis=1), np.roll(points, -2, axis=1)
     a, b = after - points, last - after
     normals = np.abs(
         np.stack(
             [
-                a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1],
-                a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2],
-                a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0],
+                a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1],
+                a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2],
+                a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0],
             ],
-            axis=1,
+            axis=2,
         )
     )
-    bent = np.flatnonzero((normals > _LEAST_CORNER).any(axis=1))
-    if not len(bent):
-        return 1, 2
-    x, y, z = normals[bent[0]]
-    if x > y and x > z:
-        return 1, 2
-    return (0, 1) if z > x and z > y else (0, 2)
+    is_bent = (normals > _LEAST_CORNER).any(axis=2)
+    x, y, z = normals[np.arange(len(normals)), is_bent.argmax(axis=1)].T
+    across_x = ((x > y) & (x > z)) | ~is_bent.any(axis=1)
+    across_z = ~across_x & (z > x) & (z > y)
+    return np.where(across_x[:, None], [1, 2], np.where(across_z[:, None], [0, 1], [0, 2]))
 
 
-def _is_reflex(ear: NDArray[np.float32]) -> bool:
-    """Whether the turn at the second of three points is against that of the first two about the origin."""
-    (ax, ay), (bx, by), (cx, cy) = ear
+def _are_reflex(ears: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Whether the turn at the second of three points (m, 3, 2) is against that of the first two about the origin."""
+    (ax, ay), (bx, by), (cx, cy) = (ears[:, corner].T for corner in range(3))
     turn = (bx - ax) * (cy - by) - (by - ay) * (cx - bx)
     area = (ax * by - ay * bx) * np.float32(0.5)
-    return bool(turn * area < 0.0)
+    return np.asarray(turn * area < 0.0)
 
 
-def _is_within(ear: NDArray[np.float32], point: NDArray[np.float32]) -> bool:
-    """Whether a ray from the point crosses the sides of a triangle an odd number of times."""
-    x, y = point
-    inside = False
-    for (ax, ay), (bx, by) in zip(ear, (ear[2], ear[0], ear[1]), strict=True):
-        if (ay > y) != (by > y) and x < (bx - ax) * (y - ay) / (by - ay) + ax:
-            inside = not inside
+def _are_within(ears: NDArray[np.float32], points: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Whether a ray from each point (m, k, 2) crosses the sides of its triangle (m, 3, 2) an odd number of times."""
+    x, y = points[..., 0], points[..., 1]
+    inside = np.zeros(x.shape, dtype=bool)
+    with np.errstate(all="ignore"):  # of sides along the ray, which it does not cross
+        for first, second in ((0, 2), (1, 0), (2, 1)):
+            (ax, ay), (bx, by) = ears[:, first, :, None].swapaxes(0, 1), ears[:, second, :, None].swapaxes(0, 1)
+            inside ^= ((ay > y) != (by > y)) & (x < (bx - ax) * (y - ay) / (by - ay) + ax)
     return inside
