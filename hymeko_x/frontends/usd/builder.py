@@ -20,6 +20,7 @@ from hymeko_x.ir.builder import Builder
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Code, Report
+    from hymeko_x.frontends.usd.places import Lines
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.stage import Scene
     from hymeko_x.ir.mechanism import Id
@@ -70,7 +71,7 @@ class UsdBuilder(Builder, dict=True):
         return Origin(self.source.name)
 
     @cached_property
-    def _lines(self) -> dict[str, int]:
+    def _lines(self) -> Lines:
         return lines_of_prims(self.source.data)
 
     def origin_of(self, prim: Prim) -> Origin:
