@@ -55,7 +55,7 @@ def names(kind: str, units: Sequence[Unit], members: Sequence[Element]) -> Itera
     found = [given.get("class", "")]
     texts = [unit.text for unit in units]
     if len(units) == 1:
-        found += [given.get("material", ""), given.get("mesh", "")]
+        found += [given.get("material", ""), given.get("mesh", ""), f"{given['material']}_{behind}" if "material" in given else ""]
     is_inside = len(members[0].path) > 1
     found += _by_mesh(given.get("mesh", ""), members, behind)
     found += _by_owners(members, behind, is_inside=is_inside, sides=kind != "dof")
@@ -82,7 +82,10 @@ def _by_owners(members: Sequence[Element], behind: str, *, is_inside: bool, side
         yield from ([f"{where}_{own}_{behind}"] if where else [])
     else:
         around = meaning(_ends(members)) or _by_assembly(members)
-        yield f"{around}_{'joint' if behind == _BEHIND['@'] else behind}" if around else ""
+        if around and behind == _BEHIND["@"]:
+            yield f"{around}_joint"
+        if around and (behind != _BEHIND["@"] or len(f"{around}_joint") <= _SHORT):  # a shorter name would come first
+            yield f"{around}_{behind}"
     counts = Counter(word for owner in owners for word in dict.fromkeys(telling_words(owner)))
     most = max(counts, key=lambda word: counts[word], default="")
     if 2 * counts[most] > len(owners):
