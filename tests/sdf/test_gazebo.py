@@ -33,6 +33,7 @@ def written(fragment: str, folder: Path) -> str:
         ('<gazebo reference="a"><sensor name="i" type="imu"><always_on>1</always_on></sensor></gazebo>', '<sensor name="i" type="imu">'),
         ('<gazebo reference="j"><provideFeedback>true</provideFeedback></gazebo>', "<provide_feedback>true</provide_feedback>"),
         ('<gazebo reference="a"><mu2 value="0.5"/></gazebo>', "<surface><friction><ode><mu2>0.5</mu2></ode></friction></surface>"),
+        ('<gazebo reference="a"><self_collide>true</self_collide></gazebo>', "<self_collide>true</self_collide>"),
         ('<gazebo reference="a"><selfCollide>Yes</selfCollide></gazebo>', "<self_collide>true</self_collide>"),
         ('<gazebo reference="a"><turnGravityOff value="TRUE"/></gazebo>', "<gravity>false</gravity>"),
         ('<gazebo reference="a"><laserRetro>3</laserRetro></gazebo>', "<laser_retro>3</laser_retro>"),

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 TAG = "gazebo"
 
-OF_LINK: Mapping[str, str] = MappingProxyType({"selfCollide": "self_collide", "gravity": "gravity"})
+OF_LINK: Mapping[str, str] = MappingProxyType({"self_collide": "self_collide", "selfCollide": "self_collide", "gravity": "gravity"})
 TURN_GRAVITY_OFF = "turnGravityOff"
 DAMPING = "dampingFactor"
 """Both velocities of a link decay by it."""
@@ -50,7 +50,7 @@ OF_JOINT: Mapping[str, tuple[str, str]] = MappingProxyType(
 """The path and the name in SDF of what a fragment calls otherwise."""
 OF_DOF: Mapping[str, str] = MappingProxyType({"springStiffness": "stiffness", "springReference": "spring_ref"})
 """The field of a joint's only dof."""
-FLAGS = frozenset(("selfCollide", "gravity", TURN_GRAVITY_OFF, "provideFeedback", "implicitSpringDamper", "cfmDamping"))
+FLAGS = frozenset((*OF_LINK, TURN_GRAVITY_OFF, "provideFeedback", "implicitSpringDamper", "cfmDamping"))
 """What is true or false: true by the words ``true``, ``yes`` and ``1``, in any case."""
 VECTORS = frozenset(("fdir1",))
 """What is more than one number."""
