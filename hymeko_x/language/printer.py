@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from itertools import zip_longest
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from hymeko_x.ir.values import are_numbers, number_text, numbers_text
 from hymeko_x.language.syntax import (
@@ -27,7 +26,7 @@ from hymeko_x.language.syntax import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
 
 class TextBlock(NamedTuple):
@@ -38,6 +37,7 @@ class TextBlock(NamedTuple):
 
 
 Piece = Item | TextBlock | str
+P = TypeVar("P", bound=Piece)
 _OPEN = (Node, TextBlock)
 _ON_LINES_OF_THEIR_OWN = (Node, TextBlock, Comment)
 
@@ -57,7 +57,7 @@ def print_document(document: Document) -> str:
     """The text of a whole document, ending in a newline."""
     items = [Field(document.header), *document.items] if document.header else [*document.items]
     lines: list[str] = []
-    for item, following in zip_longest(items, items[1:]):
+    for item, following in _with_next(items):
         lines.extend(_lines(item))
         if following is not None and _needs_comma(item, following):
             lines[-1] += ","
@@ -197,9 +197,9 @@ def _broken(items: tuple[Piece, ...], width: int) -> list[Piece]:
     """The items of a block for several lines: nodes each on its own, runs of fields and arcs filled up to the width."""
     parts: list[Piece] = []
     run: list[Piece] = []
-    for item in items:
+    for item, following in _with_next(items):
         if isinstance(item, _ON_LINES_OF_THEIR_OWN):
-            parts.extend(_filled(run, width, item))
+            parts.extend(_filled(run, width, following if isinstance(item, Comment) else item))
             run = []
             parts.append(item)
         else:
@@ -223,11 +223,22 @@ def _filled(items: list[Piece], width: int, following: Piece | None = None) -> l
 
 def _texts(items: Sequence[Piece], behind: Piece | None = None) -> Iterator[str]:
     """Each item in one line, with the comma that the grammar needs before the next one."""
-    for item, following in zip_longest(items, items[1:], fillvalue=behind):
+    for item, following in _with_next(items, behind):
         if isinstance(item, str):
             yield item
         else:
-            yield _text(item) + "," * (following is not None and _needs_comma(item, following))  # type: ignore[arg-type]
+            yield _text(item) + "," * (following is not None and _needs_comma(item, following))
+
+
+def _with_next(items: Sequence[P], behind: P | None = None) -> Iterable[tuple[P, P | None]]:
+    """Each item with the next one that is no comment."""
+    if Comment not in map(type, items):
+        return zip(items, (*items[1:], behind), strict=True) if items else ()
+    pairs: list[tuple[P, P | None]] = []
+    for item in reversed(items):
+        pairs.append((item, behind))
+        behind = behind if isinstance(item, Comment) else item
+    return reversed(pairs)
 
 
 def _joined(items: Sequence[Piece]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from functools import cache
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.lark import from_lark
@@ -44,6 +45,7 @@ def _texts() -> st.SearchStrategy[str]:
     return from_lark(Lark(grammar_text(), parser="lalr", maybe_placeholders=False), start="start", explicit=words)
 
 
+@pytest.mark.unread
 @FEW
 @given(st.deferred(lambda: _texts()))
 def test_a_text_of_the_grammar_is_a_mechanism_or_a_diagnostic(text: str) -> None:
@@ -58,4 +60,17 @@ def test_what_parses_is_printed_so_that_it_parses_alike(text: str) -> None:
     except Refusal:
         return
     printed = print_document(document)
+    assert print_document(parse(printed)) == printed
+
+
+def test_an_infinite_weight_at_the_beginning_is_no_header() -> None:
+    document = parse("[1e999] -> a")
+    assert document.header == ""
+    assert parse(print_document(document)) == document
+
+
+@pytest.mark.parametrize("text", ["[a] // note\n -> b", "r { a, /* note */ + b }", "r { c { x 1 } a, // one\n// two\n + b }"])
+def test_a_name_alone_stays_alone_where_a_comment_follows(text: str) -> None:
+    printed = print_document(parse(text))
+    assert "a," in printed
     assert print_document(parse(printed)) == printed
