@@ -39,9 +39,12 @@ def cut(points: NDArray[np.float32], sizes: NDArray[Any], corners: NDArray[Any])
         places = cutter(points, starts[numbers], corners)
         tables.append(places)
         owners.append(np.repeat(numbers, len(places) // max(len(numbers), 1)))
-    for size in np.unique(sizes[(sizes > _QUADRILATERAL) & (sizes <= MOST_CORNERS)]).tolist():
-        numbers = np.flatnonzero(sizes == size)
-        ears, whose = _ears(points[corners[starts[numbers, None] + np.arange(size)]])
+    large = np.flatnonzero((sizes > _QUADRILATERAL) & (sizes <= MOST_CORNERS))
+    widths = 2 ** np.ceil(np.log2(sizes[large])).astype(np.intp)  # polygons of about one size are cut together
+    for width in np.unique(widths).tolist():
+        numbers = large[widths == width]
+        around = np.arange(width) % sizes[numbers, None]
+        ears, whose = _ears(points[corners[starts[numbers, None] + around]], sizes[numbers])
         tables.append(ears + starts[numbers[whose], None])
         owners.append(numbers[whose])
     places, owner = np.concatenate(tables), np.concatenate(owners)
@@ -66,15 +69,16 @@ def _quadrilaterals(points: NDArray[np.float32], starts: NDArray[np.intp], corne
 # ---- ears ------------------------------------------------------------------------------------------------------------------------
 
 
-def _ears(points: NDArray[np.float32]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """The triangles of polygons (m, n, 3) with n > 4 corners, by the numbers of their corners, and whose they are; of tangled ones not all.
+def _ears(points: NDArray[np.float32], sizes: NDArray[Any]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The triangles of polygons with more than four corners, by the numbers of these, and whose they are; of tangled ones not all.
 
-    All polygons are cut in step: each step looks at one corner of each, and cuts it off where it is an ear.
+    ``points`` (m, n, 3) are the corners of each polygon, of which there are ``sizes`` (m,); behind them they come again. All polygons are
+    cut in step: each step looks at one corner of each, and cuts it off where it is an ear.
     """
-    flat = np.take_along_axis(points, _axes(points)[:, None, :], axis=2)
+    flat = np.take_along_axis(points, _axes(points, sizes)[:, None, :], axis=2)
     rows = np.arange(len(flat))
     left = np.tile(np.arange(flat.shape[1]), (len(flat), 1))
-    count = np.full(len(flat), flat.shape[1])
+    count = np.array(sizes, dtype=np.intp)
     at, tries, before = np.zeros_like(count), count.copy(), count.copy()
     found: list[NDArray[np.intp]] = []
     owners: list[NDArray[np.intp]] = []
@@ -99,9 +103,10 @@ def _ears(points: NDArray[np.float32]) -> tuple[NDArray[np.intp], NDArray[np.int
     return np.concatenate([*found, left[done, :3]]), np.concatenate([*owners, done])
 
 
-def _axes(points: NDArray[np.float32]) -> NDArray[np.intp]:
+def _axes(points: NDArray[np.float32], sizes: NDArray[Any]) -> NDArray[np.intp]:
     """The two axes (m, 2) onto which polygons are laid: across the largest component of the normal at the first corner that is one."""
-    after, last = np.roll(points, -1, axis=1), np.roll(points, -2, axis=1)
+    places = np.arange(points.shape[1])
+    after, last = (np.take_along_axis(points, ((places + step) % sizes[:, None])[..., None], axis=1) for step in (1, 2))
     a, b = after - points, last - after
     normals = np.abs(
         np.stack(
