@@ -5,6 +5,7 @@ T_world_child(q) = T_world_parent * P * prod_i( Tr(a_i) M_i(q_i - ref_i) Tr(-a_i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -27,7 +28,7 @@ WIDTHS = {DofKind.BALL: 4, DofKind.FREE: 7}
 
 
 def all_poses(mechanism: Mechanism, q: Coordinates) -> dict[Id, Pose]:
-    """The pose of each body. Linear in the bodies. Raises: KeyError for unknown joints, EditError for a wrong number of coordinates."""
+    """The pose of each body. Linear in the bodies. Raises: KeyError for unknown joints, EditError for coordinates that are none."""
     values = coordinates(mechanism, q)
     poses: dict[Id, Pose] = {WORLD: IDENTITY}
     for body in mechanism.depth_first():
@@ -61,17 +62,32 @@ def coordinates(mechanism: Mechanism, q: Coordinates) -> dict[Id, tuple[float, .
         if name not in by_name:
             raise unknown_name("joint", name, by_name)
         key = by_name[name]
-        numbers = _numbers(value)
-        width = width_of(mechanism.joints[key].joint.dofs)
-        if len(numbers) != width:
-            raise EditError(f"{key} has {width} coordinates, found {len(numbers)}")
-        values[key] = numbers
+        values[key] = _checked(str(key), _numbers(value, str(key)), mechanism.joints[key].joint.dofs)
     return _with_followers(mechanism, values)
 
 
-def _numbers(value: float | Sequence[float]) -> tuple[float, ...]:
-    """One coordinate, or several in a sequence or an array."""
-    return (float(value),) if isinstance(value, float | int) else tuple([float(number) for number in value])
+def _numbers(value: float | Sequence[float], name: str) -> tuple[float, ...]:
+    """One coordinate, or several in a sequence or an array. Raises: EditError for what are no finite numbers."""
+    try:
+        found = (float(value),) if isinstance(value, float | int) else tuple([float(number) for number in value])
+    except (TypeError, ValueError):
+        found = (math.nan,)
+    if not all(map(math.isfinite, found)):
+        raise EditError(f"{name}: coordinates are finite numbers, found {value!r}")
+    return found
+
+
+def _checked(name: str, numbers: tuple[float, ...], dofs: tuple[Dof, ...]) -> tuple[float, ...]:
+    """As many coordinates as the joint has. Raises: EditError for another number, and for a quaternion of zeros."""
+    width = width_of(dofs)
+    if len(numbers) != width:
+        raise EditError(f"{name} has {width} coordinates, found {len(numbers)}")
+    start = 0
+    for dof in dofs:
+        start += WIDTHS.get(dof.kind, 1)
+        if dof.kind in WIDTHS and not any(numbers[start - 4 : start]):
+            raise EditError(f"{name}: a quaternion of zeros is no rotation")
+    return numbers
 
 
 def width_of(dofs: tuple[Dof, ...]) -> int:
@@ -91,7 +107,7 @@ def references(dofs: tuple[Dof, ...]) -> tuple[float, ...]:
 def _by_name(mechanism: Mechanism, q: Coordinates) -> Mapping[str, float | Sequence[float]]:
     if isinstance(q, Mapping):
         return q
-    numbers = [float(number) for number in q]
+    numbers = _numbers(q, f"robot '{mechanism.name}'")
     found: dict[str, Sequence[float]] = {}
     start = 0
     for key, view in mechanism.joints.items():

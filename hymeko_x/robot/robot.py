@@ -73,7 +73,7 @@ class Robot(RobotData):
         ``q`` has a number by joint name, a quaternion (w, x, y, z) for a ball, a position and a quaternion for a free joint, or it is
         the sequence of all coordinates in the order of the joints. Joints left out are at their references; followers follow.
 
-        Raises: KeyError for a joint that is not there, EditError for a wrong number of coordinates.
+        Raises: KeyError for a joint that is not there, EditError for a wrong number of coordinates, and for what is no finite number.
         """
         return {key.name: pose for key, pose in all_poses(self.mechanism, {} if q is None else q).items() if key.kind == "body"}
 

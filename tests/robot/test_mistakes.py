@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import hymeko_x as hx
+from hymeko_x.robot.kinematics import Coordinates
 from tests.robot.robots import arm
 
 
@@ -60,3 +61,25 @@ def test_a_tensor_that_no_body_can_have_is_an_error(tensor: tuple[float, ...], m
     with arm().edit() as e:
         e.bodies["fore"].tensor = (0, 0, 0, 0, 0, 0)  # a point
         e.bodies["upper"].tensor = (1, 1, 2, 0, 0, 0)  # a disc
+
+
+@pytest.mark.parametrize(
+    ("q", "message"),
+    [
+        ({"turn": float("nan")}, "joint 'turn': coordinates are finite numbers, found nan"),
+        ({"turn": "much"}, "joint 'turn': coordinates are finite numbers, found 'much'"),
+        ({"turn": None}, "joint 'turn': coordinates are finite numbers, found None"),
+        ({"turn": (1, 2)}, "joint 'turn' has 1 coordinates, found 2"),
+        ({"fly": (0, 0, 1, 0, 0, 0, 0)}, "joint 'fly': a quaternion of zeros is no rotation"),
+        ({"roll": (0, 0, 0, 0)}, "joint 'roll': a quaternion of zeros is no rotation"),
+        ([0.0] * 11 + [float("inf")], "robot 'r': coordinates are finite numbers, found"),
+        ([0.0] * 11, "robot 'r' has 12 coordinates, found 11"),
+    ],
+)
+def test_coordinates_that_are_none_are_named(q: Coordinates, message: str) -> None:
+    text = "r : robot { a {} b {} c {} @fly : floating { + world - a } @roll : ball { + a - b } @turn : revolute { + b - c axis=Z } }"
+    robot = hx.loads(text, "hymeko")
+    with pytest.raises(hx.EditError) as error:
+        robot.fk(q)
+    assert str(error.value).startswith(message)
+    assert robot.fk({"fly": (1, 0, 0, 1, 0, 0, 0), "turn": np.float64(0.5)})["c"].xyz == (1, 0, 0)
