@@ -101,6 +101,7 @@ ERRORS: Mapping[Code, str] = {
 """Why it ends the command."""
 
 WARNINGS: Mapping[Code, str] = {
+    codes.WRONG_ROOT: "the root of SDF before 1.3 is read as its own rules convert it, and other programs refuse the file",
     codes.REPAIRED_XML: "every element and attribute is there as it was written; other readers overlook the mistake, or refuse the file",
     codes.ENGINE_REFUSED: "the output is complete; what only the engine finds out about it is not in it",
     codes.NO_FORM: "the equations are those of what they cover",

@@ -6,7 +6,6 @@ import json
 import os
 import posixpath
 import re
-from hashlib import sha256
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
@@ -56,7 +55,11 @@ def variant(uri: str, path: str, other: str | None, files: Files) -> str:
     if other is None or other == path or suffix_of(path) not in WITH_COMPANIONS:
         return ""
     own, others = ({name: files.read(there) for name, there in companions_of(*at, files)} for at in ((uri, path), (other, other)))
-    return "" if own == others else sha256(b"\0".join(part for name in sorted(own) for part in (name.encode(), own[name]))).hexdigest()
+    if own == others:
+        return ""
+    from hashlib import sha256  # 3 ms that most conversions need not wait for
+
+    return sha256(b"\0".join(part for name in sorted(own) for part in (name.encode(), own[name]))).hexdigest()
 
 
 def _is_occupied(place: str, source: str, shelf: Shelf, files: Files) -> bool:
