@@ -175,9 +175,8 @@ def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep, *, mo
     found = read_file(files, uri)
     if found is None:
         return None
-    stem, suffix = file_stem(uri), suffix_of(path)
-    known = shelf.copies.get(shelf.known(stem, suffix, found[1]) or "")
-    return shelf.copy(folder_with_room(folder, uri, path, shelf, files), stem, suffix, *found, variant(uri, path, known, files))
+    place = folder_with_room(folder, uri, path, shelf, files)
+    return shelf.copy(place, file_stem(uri), suffix_of(path), *found, lambda earlier: variant(uri, path, earlier, files))
 
 
 def _stays(uri: str, shelf: Shelf, files: Files) -> bool:

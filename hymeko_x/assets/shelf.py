@@ -13,8 +13,13 @@ from hymeko_x.ir.names import free_name
 from hymeko_x.source import NO_FILES
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from hymeko_x.formats import Assets
     from hymeko_x.source import Files
+
+    Variant = Callable[[str | None], str]
+    """What tells content at another place from the same bytes, by the source of the earlier copy of these, if there is one."""
 
 _UNSAFE = re.compile(r"[^\w.+=@()-]+")
 _MOST_LETTERS = 80
@@ -46,10 +51,10 @@ class Shelf:
             self.files[path] = data
         return path
 
-    def copy(self, folder: str, stem: str, suffix: str, source: str, data: bytes, variant: str = "") -> str:
+    def copy(self, folder: str, stem: str, suffix: str, source: str, data: bytes, variant: Variant | None = None) -> str:
         """Let the file ``source`` be copied there; in reference mode just the way from the output to it.
 
-        Equal content of one name is copied once for each ``variant``.
+        Equal content of one name is copied once for each text that ``variant`` gives.
         """
         if self.mode == "reference":
             return self.way_to(source)
@@ -93,13 +98,13 @@ class Shelf:
         except ValueError:  # another drive
             return source
 
-    def known(self, stem: str, suffix: str, data: bytes) -> str | None:
-        """The path at which this content of one name is already."""
-        return self._by_content.get(_key(stem, suffix, data))
-
-    def _name(self, folder: str, stem: str, suffix: str, data: bytes, variant: str = "") -> tuple[str, bool]:
+    def _name(self, folder: str, stem: str, suffix: str, data: bytes, variant: Variant | None = None) -> tuple[str, bool]:
         """The path for this content, and whether the content is new."""
-        key = _key(stem, suffix, data, variant)
+        from hashlib import sha256
+
+        name, digest = safe_name(stem) + suffix, sha256(data).hexdigest()
+        earlier = self.copies.get(self._by_content.get((name, digest), ""))
+        key = (name, digest if variant is None else digest + variant(earlier))
         if key in self._by_content:
             return self._by_content[key], False
         start = f"{self.within}{folder}/"
@@ -108,13 +113,6 @@ class Shelf:
         self._taken.add(path.lower())
         self._by_content[key] = path
         return path, True
-
-
-def _key(stem: str, suffix: str, data: bytes, variant: str = "") -> tuple[str, str]:
-    """What stored files are told apart by: their name and their content."""
-    from hashlib import sha256
-
-    return safe_name(stem) + suffix, sha256(data).hexdigest() + variant
 
 
 def safe_name(name: str) -> str:

@@ -34,10 +34,7 @@ def with_same_numbers(edited: Mechanism, image: Mechanism, unnamed: Set[Id]) -> 
         body, stroke, rest = key.name.partition("/")
         if body in bodies:
             names[key] = Id(key.kind, f"{bodies[body]}{stroke}{rest}")
-    free = Names((*there, *names.values()))
-    for key in sorted(set(names.values()) & there - names.keys()):  # what is called as another one was, such as the joint of a renamed body
-        view = edited.joints.get(key)
-        names[key] = free.take(key.kind, key.name if view is None else view.child.name)
+    names |= _made_way(edited, names)
     return with_references(rename(edited, names), names)
 
 
@@ -105,7 +102,9 @@ def with_same_assets(edited: Mechanism, image: Mechanism) -> Mechanism:
 
 
 def _made_way(robot: Mechanism, names: dict[Id, Id]) -> dict[Id, Id]:
-    """Free ids for elements whose own ids others get."""
+    """Free ids for elements whose own ids others get, such as the joint of a renamed body, which is called as that body is."""
     there = {*robot.graph.vertices, *robot.graph.edges}
     free = Names((*there, *names.values()))
-    return {key: free.take(*key) for key in sorted(set(names.values()) & there - names.keys())}
+    taken = sorted(set(names.values()) & there - names.keys())
+    views = {key: robot.joints.get(key) for key in taken}
+    return {key: free.take(key.kind, key.name if view is None else view.child.name) for key, view in views.items()}

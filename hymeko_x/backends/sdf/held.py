@@ -78,8 +78,8 @@ def _places_of(key: Id, sheet: SdfSheet) -> Iterator[tuple[Id, str, str]]:
 
 def _obeyed(given: list[_Given], image: Mechanism) -> Callable[[Difference], bool]:
     """Whether an image from SDF has what the fragments of a robot say, so that neither they are missing nor it is new."""
-    said, written = _values_of(given), _Values()
-    for key in said.texts:
+    wanted, written = _values_of(given), _Values()
+    for key in wanted.texts:
         for extra in image.extras.get(key, ()):
             written.add(key, extra)
 
@@ -89,7 +89,9 @@ def _obeyed(given: list[_Given], image: Mechanism) -> Callable[[Difference], boo
 
     def is_obeyed(one: _Given) -> bool:
         is_known = bool(one.extras or one.fields) or one.tag in fragments.OBEYED
-        return is_known and all(_is_value_of(*place, image, said.fields) for place in one.fields) and all(has(*pair) for pair in one.extras)
+        return (
+            is_known and all(_is_value_of(*place, image, wanted.fields) for place in one.fields) and all(has(*pair) for pair in one.extras)
+        )
 
     lost = {one.fragment for one in given if not is_obeyed(one)}
 
@@ -98,10 +100,10 @@ def _obeyed(given: list[_Given], image: Mechanism) -> Callable[[Difference], boo
         if before is not None and before.startswith(_FRAGMENT):
             return before not in lost
         if after is not None and field.startswith(_SDF):
-            return said.has(key, _path(field), after)
+            return wanted.has(key, _path(field), after)
         if before is None and not field:
-            return any(Id(kind, key.name) in said.texts for kind in _SENSORS if key.kind in (kind, "mount"))
-        return _is_value_of(key, field, image, said.fields)
+            return any(Id(kind, key.name) in wanted.texts for kind in _SENSORS if key.kind in (kind, "mount"))
+        return _is_value_of(key, field, image, wanted.fields)
 
     return is_held
 
