@@ -52,7 +52,7 @@ def shorten_computed(mechanism: Mechanism, source: Mechanism) -> Mechanism:
 def clean_pose(pose: Pose) -> Pose:
     """A computed pose without noise; lengths relative to 1 m at least. It has no notation."""
     x, y, z = shortest_of(pose.xyz, 1.0)
-    return replace(pose, xyz=(x, y, z), quat=clean_quat(pose.quat), written=None)
+    return replace(pose, xyz=(x, y, z), quat=unit_quat(clean_quat(pose.quat)), written=None)
 
 
 def _changed(parts: Mapping[Id, Any], before: Mapping[Id, Any]) -> dict[Id, Any]:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from msgspec import Struct, field
 
 from hymeko_x.ir.mechanism import WORLD
-from hymeko_x.ir.values import IDENTITY, compose, inverse
+from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse
+from hymeko_x.rewrite.decimals import clean_pose
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.ir.values import Pose
 
 _NEAR = 4
 """So many steps up are looked at before poses in the world are compared: near frames then have exactly the numbers of the file."""
@@ -55,14 +55,30 @@ class Frames(Struct):
         return pose
 
     def relative(self, frame: Id, base: Id) -> Pose:
-        """The pose of a frame in another one."""
+        """The pose of a frame in another one: numbers of the file as they are, computed ones without noise."""
         near = self._up(frame, base)
-        if near is not None:
-            return near
-        back = self._up(base, frame)
-        if back is not None:
-            return inverse(back)
-        return compose(inverse(self.in_world(base)), self.in_world(frame))
+        if near is None:
+            back = self._up(base, frame)
+            near = inverse(back) if back is not None else compose(inverse(self.in_world(base)), self.in_world(frame))
+        return near if near is IDENTITY else self._cleaned(near, [*self._steps(frame), *self._steps(base)])
+
+    @staticmethod
+    def _cleaned(pose: Pose, given: list[Pose]) -> Pose:
+        """A pose without the noise of computing it from those given."""
+        if pose in given:
+            return pose
+        clean, known = clean_pose(pose), {abs(number) for step in given for number in step.xyz}
+        x, y, z = (a if abs(a) in known else b for a, b in zip(pose.xyz, clean.xyz, strict=True))
+        turn = next((step for step in given if step.quat == pose.quat), clean)
+        return Pose((x, y, z), turn.quat, turn.written)
+
+    def _steps(self, frame: Id) -> list[Pose]:
+        """The poses of the file on the way up from a frame, as far as near frames are."""
+        found: list[Pose] = []
+        while frame in self.given and len(found) < _NEAR:
+            frame, pose = self.given[frame]
+            found.append(pose)
+        return found
 
     def _up(self, frame: Id, base: Id, most: int = _NEAR) -> Pose | None:
         """The pose of a frame in one that is a few steps above it; None where it is not."""

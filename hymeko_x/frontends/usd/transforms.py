@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 from pxr import Gf, UsdGeom
 
 from hymeko_x import codes
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, cross, dot, scaled, unit_quat
+from hymeko_x.rewrite.decimals import clean_pose
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin, Report
@@ -51,8 +53,9 @@ class Transforms:
         return found
 
     def seen_from(self, prim: Prim, body: Prim | None) -> Transform:
-        """The prim in the rigid frame of a body; in the world without one."""
-        return decomposed(self.relative(prim, body))
+        """The prim in the rigid frame of a body, without the noise of computing it; in the world without one."""
+        found = decomposed(self.relative(prim, body))
+        return found if found.pose is IDENTITY else replace(found, pose=clean_pose(found.pose))
 
     def relative(self, prim: Prim, body: Prim | None) -> Any:
         """The matrix from a prim to the rigid frame of a body, or to the world."""
