@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 from msgspec import Struct
 
 from hymeko_x import formats
-from hymeko_x.compare.extras import essence_of
+from hymeko_x.compare.extras import as_meant, as_written, unshared
 from hymeko_x.compare.leaves import TURN, leaves_between, leaves_of
 from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Arc, Edge
@@ -232,21 +232,9 @@ def _excerpt(values: tuple[object, ...], first: int = 0) -> str:
 
 def _extras(key: Id, a: tuple[Extra, ...], b: tuple[Extra, ...]) -> Iterator[Difference]:
     """Extras have no identity beyond format, path and text: they are compared as multisets. How XML is laid out does not count."""
-    rest = list(b)
-    left: list[Extra] = []
-    for extra in a:
-        if extra in rest:
-            rest.remove(extra)
-        else:
-            left.append(extra)
-    places = {(extra.format, extra.path) for extra in left} & {(extra.format, extra.path) for extra in rest}
-    essences = [essence_of(extra) if (extra.format, extra.path) in places else extra for extra in rest]
+    left, rest = unshared(a, b, as_written, as_meant)
     for extra in left:
-        if (extra.format, extra.path) in places and (essence := essence_of(extra)) in essences:
-            place = essences.index(essence)
-            del essences[place], rest[place]
-        else:
-            yield Difference(key, f"{extra.format} {extra.path or 'content'}", extra.text, None)
+        yield Difference(key, f"{extra.format} {extra.path or 'content'}", extra.text, None)
     for extra in rest:
         yield Difference(key, f"{extra.format} {extra.path or 'content'}", None, extra.text)
 

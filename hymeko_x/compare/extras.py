@@ -1,13 +1,19 @@
-"""What an extra is apart from its layout."""
+"""What an extra is apart from its layout, and which extras two elements do not share."""
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Iterable, Sequence
+
     from hymeko_x.ir.mechanism import Extra
+
+    Identity = Callable[[Extra], Hashable]
+    Known = Iterable[tuple[Hashable, Extra]]
 
 
 def essence_of(extra: Extra) -> Extra:
@@ -20,3 +26,38 @@ def essence_of(extra: Extra) -> Extra:
         return replace(extra, text=canonicalize(extra.text, strip_text=True))
     except ParseError:
         return extra
+
+
+def as_written(extra: Extra) -> Hashable:
+    """An extra with its text as it stands, wherever it stands among others."""
+    return extra.format, extra.path, extra.text
+
+
+def as_meant(extra: Extra) -> Hashable:
+    """An extra with its essence, wherever it stands among others."""
+    return as_written(essence_of(extra))
+
+
+def unshared(mine: Sequence[Extra], theirs: Sequence[Extra], *identities: Identity) -> tuple[list[Extra], list[Extra]]:
+    """The extras of each that the other does not have, as multisets, in their order. Linear.
+
+    Two are the same by the first of ``identities``; what that leaves of both sides, by the next one.
+    """
+    a, b = list(mine), list(theirs)
+    for identity in identities:
+        if not a or not b:
+            break
+        known, others = ([(identity(extra), extra) for extra in extras] for extras in (a, b))
+        both = Counter(key for key, _ in known) & Counter(key for key, _ in others)
+        a, b = _without(known, both.copy()), _without(others, both)
+    return a, b
+
+
+def _without(extras: Known, shared: Counter[Hashable]) -> list[Extra]:
+    """The extras beyond the shared ones, which are counted down."""
+    left = []
+    for key, extra in extras:
+        shared[key] -= 1
+        if shared[key] < 0:
+            left.append(extra)
+    return left

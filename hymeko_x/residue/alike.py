@@ -16,7 +16,7 @@ from hymeko_x.ir.parts import Role, Shape
 from hymeko_x.ir.values import IDENTITY, are_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Hashable, Iterable
 
     from hymeko_x.ir.mechanism import Extra, RobotArc
 
@@ -114,14 +114,8 @@ def holds(now: object, then: object, default: object) -> bool:
     return is_alike(now, default if then is NODEFAULT else then)
 
 
-def is_same_extra(now: Extra, then: Extra) -> bool:
-    """Whether an extra is what it was, but for what elements inherit from it and have in a field, where an edit would be seen."""
-    if (now.format, now.path) != (then.format, then.path):
-        return False
-    if now.text == then.text:
-        return True
-    inherited = next((row.inherited for row in formats.FORMATS if row.name == now.format), None)
-    if inherited is None or now.path:
-        return False
-    without = formats.loaded(inherited)
-    return bool(without(now.text) == without(then.text))
+def without_inherited(extra: Extra) -> Hashable:
+    """An extra without what elements inherit from it and have in a field, where an edit would be seen."""
+    inherited = next((row.inherited for row in formats.FORMATS if row.name == extra.format), None)
+    text = extra.text if inherited is None or extra.path else formats.loaded(inherited)(extra.text)
+    return extra.format, extra.path, text

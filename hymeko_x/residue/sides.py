@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.compare.extras import essence_of
+from hymeko_x.compare.extras import as_meant, as_written, unshared
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.residue import Run, Sides
-from hymeko_x.residue.alike import is_same_extra
+from hymeko_x.residue.alike import without_inherited
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -155,10 +155,6 @@ def _extras(image: Mechanism, source: Mechanism) -> Iterator[tuple[Id, Extra, bo
         yield from ((key, extra, True) for extra in theirs[len(kept) :])
 
 
-_NEAR = 20
-"""Among so many extras of an element in their order one that only the image has is looked for."""
-
-
 def with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mechanism:
     """The mechanism with the residue's side tables: notations, origins, extras and layout."""
     sides = residue.sides
@@ -186,25 +182,7 @@ def _restored_extras(residue: Residue, image: Mechanism, there: set[Id]) -> dict
     foreign: dict[Id, list[Extra]] = defaultdict(list)
     for key, extra in residue.sides.foreign_extras:
         foreign[key].append(extra)
-    extras: dict[Id, list[Extra]] = {}
-    for key, found in image.extras.items():
-        expected = foreign[key]
-        for extra in found:
-            place = _place_of(extra, expected[:_NEAR])
-            if place is None:
-                extras.setdefault(key, []).append(extra)
-            else:
-                del expected[place]
+    extras = {key: unshared(found, foreign[key], as_written, without_inherited, as_meant)[0] for key, found in image.extras.items()}
     for key, extra in residue.sides.extras:
         extras.setdefault(key, []).append(extra)
-    return {key: tuple(found) for key, found in extras.items() if key in there}
-
-
-def _place_of(extra: Extra, expected: Sequence[Extra]) -> int | None:
-    """Where an extra stands among these, with its text or with another layout and other comments, which macros drop; None for nowhere."""
-    place = next((place for place, other in enumerate(expected) if is_same_extra(extra, other)), None)
-    if place is not None or not expected:
-        return place
-    essence = essence_of(extra)
-    alike = (place for place, other in enumerate(expected) if other.path == extra.path and essence_of(other) == essence)
-    return next(alike, None)
+    return {key: tuple(found) for key, found in extras.items() if found and key in there}
