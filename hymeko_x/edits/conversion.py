@@ -14,20 +14,22 @@ from hymeko_x.compare.relevance import relevant
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_assets, with_same_numbers
+from hymeko_x.edits.weights import without_followed
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import Actuator, Body, Mesh, Texture
+from hymeko_x.ir.parts import Actuator, Body, Mesh, Shape, Texture
+from hymeko_x.ir.values import numbers_text
 from hymeko_x.residue.align import align
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.landmarks import NAMED
 from hymeko_x.residue.merge import restore
-from hymeko_x.residue.pairing import other_names, reordered_shapes
+from hymeko_x.residue.pairing import colour_of, other_names, reordered_shapes
 from hymeko_x.residue.realign import with_new_names, with_old_names
 from hymeko_x.source import PackageFiles
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Set
+    from collections.abc import Iterable, Iterator, Set
 
     from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
@@ -102,7 +104,8 @@ class Conversion:
         if self._asked is None:
             self._asked = frozenset(map(_aim, diff(guess.image, self.edited, TOLERANCE)))
         names = self._renames(guess.image)
-        restored = restore(self._under(names, self._with_inertials(guess.image), guess.image), residue, notes).mechanism
+        edited = without_followed(self._under(names, self._with_inertials(guess.image), guess.image), guess.image, self._bare_bodies())
+        restored = restore(edited, residue, notes).mechanism
         own = {new: homes.get(old, old) for new, old in names.given.items() if not _is_beside(new, old)}
         named = with_new_names(restored, {new: old for new, old in own.items() if old != WORLD})
         return with_edited_poses(self._with_transmissions(named), guess.image, self.edited, self.format)
@@ -158,6 +161,18 @@ class Conversion:
                 words = f"it changed with the edits: {edit.element} {edit.field} is {edit.before}, and {edit.after} in the edited file"
                 yield self._homes.get(edit.element, edit.element), words
 
+    def lost_colours(self) -> Iterator[str]:
+        """The colours in EDITED of shapes that have another one in ORIGINAL, as of one half of a geom, in words."""
+        assert self._used is not None
+        image = self._used.image
+        edited = self._under(self._renames(image), self.edited, image)
+        for key, shape, _ in edited.edges(Shape):
+            there, colour = image.graph.edges.get(key), colour_of(edited.graph, edited.graph.edges[key])
+            if there is None or colour is None or colour == colour_of(image.graph, there):
+                continue
+            if shape.rgba is None or there.data.rgba is None:  # type: ignore[union-attr]  # two of their own are edits that are left
+                yield f"the edit did not arrive: {key} has the colour {numbers_text(colour)}"
+
     def lost_names(self) -> list[str]:
         """The names in EDITED of shapes for which ORIGINAL has none, as where one shape of that name became several, in words."""
         assert self._used is not None
@@ -204,8 +219,15 @@ class Conversion:
 
     def _unnamed_bodies(self) -> set[Id]:
         """The ids in the image of the bodies of ORIGINAL that have no name."""
+        return self._in_image(unnamed_bodies(self.mechanism))
+
+    def _bare_bodies(self) -> set[Id]:
+        """The ids in the image of the bodies of ORIGINAL that have no inertial."""
+        return self._in_image(key for key, body in self.mechanism.vertices(Body) if body.inertial is None)
+
+    def _in_image(self, homes: Iterable[Id]) -> set[Id]:
         there = {home: key for key, home in self._homes.items()}
-        return {there.get(key, key) for key in unnamed_bodies(self.mechanism)}
+        return {there.get(key, key) for key in homes}
 
     def _with_inertials(self, image: Mechanism) -> Mechanism:
         """The edited robot; a body without an inertial, where the image has one or has no such body, has what the engine computes."""

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from hymeko_x.ir.mechanism import Mechanism, RobotArc, RobotEdge, RobotGraph
+    from hymeko_x.ir.parts import Rgba
 
 _PLACED = ("actuator", "sensor", "frame", "camera", "light")
 """Kinds of elements that an edge places, which most often has their name."""
@@ -228,11 +229,18 @@ def _appearance_of(graph: RobotGraph, edge: RobotEdge) -> object:
     """What a shape is and which colour it has, whether that is its own or a material's. Of other edges their content."""
     if not isinstance(edge.data, Shape):
         return content_of(edge)
-    materials = (graph.vertices.get(arc.target) for arc in edge.arcs if arc.target.kind == "material")
-    colour = edge.data.rgba or next((part.rgba for part in materials if isinstance(part, Material)), None)
     meshes = [_file_of(graph, arc.target) for arc in edge.arcs if arc.target.kind == "mesh"]
     placed = [rounded(arc.weight or IDENTITY) for arc in edge.arcs if arc.sign > 0]
-    return _sort(edge), rounded(edge.data.geometry), tuple(placed), tuple(meshes), rounded(colour)
+    return _sort(edge), rounded(edge.data.geometry), tuple(placed), tuple(meshes), colour_of(graph, edge)
+
+
+def colour_of(graph: RobotGraph, edge: RobotEdge) -> Rgba | None:
+    """The rounded colour of a shape, its own or that of its material; None for none, and for an edge that is no shape."""
+    if not isinstance(edge.data, Shape):
+        return None
+    materials = (graph.vertices.get(arc.target) for arc in edge.arcs if arc.target.kind == "material")
+    colour = edge.data.rgba or next((part.rgba for part in materials if isinstance(part, Material)), None)
+    return None if colour is None else tuple([round(number, _DIGITS) for number in colour])  # type: ignore[return-value]
 
 
 def _asset(graph: RobotGraph, key: Id, own: Callable[[Id, Id], Id]) -> object:

@@ -129,3 +129,31 @@ def test_a_body_that_something_of_mjcf_s_own_refers_to_is_not_removed(tmp_path: 
     ):
         hx.update(tmp_path / "r.xml", tmp_path / "r.urdf")
     assert "toe" in (tmp_path / "r.xml").read_text()
+
+
+PAD = """<mujoco model="pad">
+  <worldbody>
+    <geom name="floor" type="box" size="1 1 0.1"{}/>
+  </worldbody>
+</mujoco>
+"""
+BLUE = '<material name="{}"><color rgba="0 0 1 1"/></material>'
+
+
+@pytest.mark.unread("HX101")
+@pytest.mark.parametrize(
+    ("own", "material", "words"),
+    [
+        ("", "blue", "has the colour 0 0 1 1"),
+        (' rgba="1 0 0 1"', "blue", "has the colour 0 0 1 1"),
+        (' rgba="1 0 0 1"', "", "rgba: [1 0 0 1] -> [0 0 1 1]"),
+    ],
+)
+def test_a_colour_of_the_collision_alone_of_a_geom_that_is_both_is_reported(own: str, material: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "pad.xml").write_text(PAD.format(own))
+    hx.convert(tmp_path / "pad.xml", tmp_path / "pad.urdf")
+    start, collision, rest = (tmp_path / "pad.urdf").read_text().partition("<collision")
+    rest = re.sub(r"(?s)</geometry>(\s*<material.*?</material>)?", f"</geometry>{BLUE.format(material)}", rest, count=1)
+    (tmp_path / "pad.urdf").write_text(start + collision + rest)
+    found = hx.update(tmp_path / "pad.xml", tmp_path / "pad.urdf", dry_run=True)
+    assert [row.message for row in found.report if row.code.id == "HX118"] == [f"the edit did not arrive: shape 'world/collision' {words}"]

@@ -78,6 +78,25 @@ def test_a_link_without_inertial_has_none_when_its_shape_is_painted(tmp_path: Pa
 
 
 @pytest.mark.unread("HX101", "HX105", "HX201", "HX204")
+def test_a_link_without_inertial_has_none_when_its_shape_is_resized(tmp_path: Path) -> None:
+    """A stage states no mass for it: its engine computes one, of the shape's old size and of its new one."""
+    text, missing = updated(tmp_path / "lamp.usda", (r'(?s)(Cube "collision".*?xformOp:scale = )\(0.1, 0.1, 0.02\)', r"\1(0.2, 0.1, 0.02)"))
+    assert missing == []
+    assert text == "0.2 0.1 0.02".join(LAMP.rsplit("0.1 0.1 0.02", 1))
+
+
+@pytest.mark.unread("HX101", "HX105", "HX201", "HX204")
+def test_a_mass_that_a_stage_gets_is_an_edit(tmp_path: Path) -> None:
+    change = (
+        r'(Xform "foot" \(\s*prepend apiSchemas = \["PhysicsRigidBodyAPI")(\]\s*\)\s*\{)',
+        r'\1, "PhysicsMassAPI"\2 float physics:mass = 2',
+    )
+    text, missing = updated(tmp_path / "lamp.usda", change)
+    assert missing == []
+    assert '<mass value="2"/>' in text
+
+
+@pytest.mark.unread("HX101", "HX105", "HX201", "HX204")
 def test_a_colour_in_place_of_a_material_is_no_edit_that_is_lost(tmp_path: Path) -> None:
     text, missing = updated(tmp_path / "lamp.xml", ('material="grey"', 'material="grey" rgba="1 0 0 1"'))
     assert missing == []

@@ -1,0 +1,62 @@
+"""Inertials that follow from shapes: an edit of a shape, where a file states none, is no edit of its body's mass."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir.parts import Body, Role
+from hymeko_x.ir.solids import joined
+from hymeko_x.rewrite.context import Context
+from hymeko_x.rewrite.densities import Solids
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.parts import Inertial
+    from hymeko_x.ir.solids import Solid
+
+_SINGLE = 1e-5
+"""Of the largest number: how far inertials of sizes in single precision may be apart."""
+
+
+def without_followed(edited: Mechanism, image: Mechanism, bare: Iterable[Id]) -> Mechanism:
+    """The edited robot, in which those of the bare bodies have the inertial of the image whose inertial is that of their shapes.
+
+    It is so in both files with one density. ``bare`` are bodies of the image for which ORIGINAL has no inertial.
+    """
+    theirs, mine = (Solids(robot, Context(Report()), as_hull=True) for robot in (image, edited))
+    followed: dict[Id, Body] = {}
+    for key in bare:
+        before, after = image.part(key, Body), edited.part(key, Body)
+        if before is None or after is None or before.inertial == after.inertial:
+            continue
+        old, new = _density(before.inertial, _solid(theirs, key)), _density(after.inertial, _solid(mine, key))
+        if old is not None and new is not None and math.isclose(old, new, rel_tol=_SINGLE):
+            followed[key] = before
+    return edited.replace(vertices=followed)
+
+
+def _solid(solids: Solids, body: Id) -> Solid | None:
+    """What collides of a body as one solid of density 1, in the body's frame."""
+    views = [view for view in solids.mechanism.shapes.get(body, ()) if view.shape.role is not Role.VISUAL]
+    found = [solid for view in views if (solid := solids.of(view)) is not None]
+    return joined(found) if found else None
+
+
+def _density(inertial: Inertial | None, solid: Solid | None) -> float | None:
+    """The density in kg/m^3 with which a solid has this inertial; None where it has another one."""
+    if inertial is None or inertial.mass is None or inertial.tensor is None or solid is None:
+        return None
+    density = inertial.mass / solid.mass
+    expected = solid.times(density)
+    is_it = _are_near(inertial.com, expected.com) and _are_near(inertial.tensor, expected.tensor)
+    return density if is_it else None
+
+
+def _are_near(numbers: tuple[float, ...], others: tuple[float, ...]) -> bool:
+    """Whether they are the same but for single precision."""
+    room = _SINGLE * max(map(abs, others), default=0.0)
+    return all(abs(a - b) <= room for a, b in zip(numbers, others, strict=True))
