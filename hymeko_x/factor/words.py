@@ -18,7 +18,7 @@ _BETWEEN_WORDS = re.compile(r"[\W_\d]+")
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _SIDE = re.compile(r"(?:left|right)(?=[a-z]{3})", re.IGNORECASE)
 _LIMBS = {
-    "leg": "leg hip thigh knee shin calf ankle foot toe femur tibia",
+    "leg": "leg hip thigh knee shin shank calf ankle foot toe femur tibia",
     "arm": "arm shoulder elbow wrist forearm upperarm",
     "finger": "finger thumb index ring little pinky ffj mfj rfj lfj thj",
 }

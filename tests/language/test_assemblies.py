@@ -65,14 +65,14 @@ def test_an_assembly_may_stand_in_pieces() -> None:
     joints = [
         f"@{side}_{name} {{ + {side}_{names[place]} - {side}_{names[place + 1]} }}"
         for side in ("left", "right")
-        for place, name in enumerate(("knee", "ankle", "ball"))
+        for place, name in enumerate(("first", "second", "ball"))
     ]
     assert canonical("\n".join(("r : robot {", *bodies, *joints, "}"))) == (
         "r : robot {\n"
         "  left : assembly { thigh {} shin {} foot_link {} toe_link {} }\n"
         "  right : assembly { thigh {} shin {} foot_link {} toe_link {} }\n"
-        "  left : assembly { @knee { + thigh - shin } @ankle { + shin - foot_link } @ball { + foot_link - toe_link } }\n"
-        "  right : assembly { @knee { + thigh - shin } @ankle { + shin - foot_link } @ball { + foot_link - toe_link } }\n"
+        "  left : assembly { @first { + thigh - shin } @second { + shin - foot_link } @ball { + foot_link - toe_link } }\n"
+        "  right : assembly { @first { + thigh - shin } @second { + shin - foot_link } @ball { + foot_link - toe_link } }\n"
         "}\n"
     )
 
@@ -121,7 +121,7 @@ def test_whatever_names_begin_alike_reads_back_equal(mechanism: Mechanism) -> No
 
 
 def test_a_template_is_not_named_like_a_type_of_the_vocabulary() -> None:
-    names = [f"arm_{side}_{number}_actuator" for side in ("left", "right") for number in range(1, 6)]
+    names = [f"{side}_{number}_actuator" for side in ("left", "right") for number in range(1, 6)]
     robot = hx.loads(
         f"r : robot {{ base {{ mass 1 }} {' '.join(f'{name} : actuator.geared {{}}' for name in names)} }}", "hymeko"
     ).mechanism

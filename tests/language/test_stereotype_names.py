@@ -77,3 +77,35 @@ def test_shapes_beside_their_bodies_are_called_after_the_side() -> None:
     legs = " ".join(f"hip{n} {{ mass {n} visual {{ {shape}{n} at [[{place}] [12.25 34.5 56.75]] }} }}" for n, place in enumerate(places, 1))
     text = hx.dumps(hx.loads(f"r : robot {{ {legs} }}", "hymeko"), "hymeko")
     assert _stereotypes(text) == ["hip", "right_hip_look", "left_hip_look"]
+
+
+def _of_text(text: str) -> list[str]:
+    return _stereotypes(hx.dumps(hx.loads(f"r : robot {{ {text} }}", "hymeko"), "hymeko"))
+
+
+def test_pairs_that_do_not_collide_are_called_after_the_reason() -> None:
+    bodies = " ".join(f"link{number} {{}}" for number in range(9))
+    pairs = [(near, far, "Adjacent" if far == near + 1 else "Never") for near in range(8) for far in (near + 1, 8)]
+    text = " ".join(f"@pair{a}{b} : exclude {{ ~ link{a} ~ link{b} reason={reason} }}" for a, b, reason in dict.fromkeys(pairs))
+    assert _of_text(f"{bodies} {text}") == ["adjacent", "never"]
+
+
+def test_materials_that_share_their_gloss_are_called_glossy() -> None:
+    colours = ("red", "green", "blue", "white", "grey")
+    paints = " ".join(f"{name} : material {{ rgba [0.{n} 0 0] specular 0.53125 shininess 0.28125 }}" for n, name in enumerate(colours, 1))
+    assert _of_text(paints) == ["glossy"]
+
+
+def test_frames_called_by_their_side_are_called_after_their_body() -> None:
+    calves = " ".join(
+        f"{side}_calf {{}} {side} : frame {{ [0 0 0.{n}] + {side}_calf size [0.0234375 0.0234375 0.0234375] }}"
+        for n, side in enumerate(("FL", "FR", "RL", "RR"), 1)
+    )
+    assert _of_text(calves) == ["calf_mark"]
+
+
+def test_shapes_whose_bodies_gave_their_name_to_others_are_called_after_their_form() -> None:
+    solids = ("box [0.0234375 0.0390625 0.0546875]", "capsule [0.0234375 0.0390625]", "sphere 0.0234375", "cylinder [0.0390625 0.0546875]")
+    shapes = " ".join(f"collision {{ {solid} friction [0.6015625] }}" for solid in solids)
+    bodies = " ".join(f"{side}_down {{ {shapes} }}" for side in ("big", "small", "thin", "fat"))
+    assert _of_text(bodies) == ["down", "down_hull", "collision", "down_capsule", "down_sphere"]

@@ -31,15 +31,15 @@ def test_left_and_right_are_instances_of_one_template() -> None:
     text = canonical(f"biped : robot {{ pelvis {{}} {leg('left', '')} {leg('right', '-')} @off : exclude {{ ~ left_shin ~ right_shin }} }}")
     assert text == (
         "biped : robot {\n"
-        "  thigh_to_knee(name, side=1) : assembly {\n"
+        "  leg(name, side=1) : assembly {\n"
         "    thigh { mass 5 com [0.25 ${side*0.125} -0.2] inertia [0.07 0.07 0.01] }\n"
         '    shin { mass 3 com [0.5 ${side*0.0625} -0.3] inertia [0.04 0.04 0.005] visual "meshes/shin_${name}.stl" }\n'
         "    @hip { [0 ${side*0.1} 0] + pelvis - thigh axis=Y limit [-10 40] velocity 500 effort 90 }\n"
         "    @knee { [0 0 -0.4] + thigh - shin axis=Y limit [0 140] velocity 500 effort 90 }\n"
         "  }\n"
         "  pelvis {}\n"
-        "  left : thigh_to_knee(name=left) {}\n"
-        "  right : thigh_to_knee(name=right side=-1) {}\n"
+        "  left : leg(name=left) {}\n"
+        "  right : leg(name=right side=-1) {}\n"
         "  @off : exclude { ~ left.shin ~ right.shin }\n"
         "}\n"
     )
@@ -64,10 +64,12 @@ HALF = """
 def test_names_in_elements_and_of_others_may_have_a_parameter() -> None:
     """Those of dofs, shapes, materials, default classes, parents, and of the dof that a motor drives."""
     text = canonical(f"{HALVES}{HALF.format('left', 1)}{HALF.format('right', 2)}}}")
-    assert text.endswith('left : torso_to_ball(name=leftpaint name2="1") {}\n  right : torso_to_ball(name=rightpaint name2="2") {}\n}\n')
-    assert "childclass=`body${name2}`" in text
-    assert "drive : motor { [40] `turn${name2}` - waist " in text
-    assert "collision { sphere 0.1 material=`${name}` }" in text
+    assert text.endswith(
+        'left : torso_to_ball(material=leftpaint name="1") {}\n  right : torso_to_ball(material=rightpaint name="2") {}\n}\n'
+    )
+    assert "childclass=`body${name}`" in text
+    assert "drive : motor { [40] `turn${name}` - waist " in text
+    assert "collision { sphere 0.1 material=`${material}` }" in text
 
 
 def test_a_word_of_the_language_is_no_parameter() -> None:
@@ -80,14 +82,28 @@ def test_a_template_is_not_named_like_a_default_class() -> None:
     halves = HALF.format("left", 1) + HALF.format("right", 2)
     section = 'written { mjcf "4.0" } main() : class { torso_to_ball() { motor { ctrlrange [-1 1] } } }'
     text = canonical(f"{HALVES} {section} {halves}}}")
-    assert "torso_to_ball2(name, name2) : assembly {" in text
+    assert "torso_to_ball2(material, name) : assembly {" in text
+
+
+def test_a_template_is_named_by_what_its_instances_are() -> None:
+    part = (
+        "{0}_base {{ mass 1 com [0.25 0.125 -0.2] }} {0}_tube {{ mass 2 com [0.25 0.125 -0.2] }} {0}_tip {{ mass 3 com [0.5 0.125 -0.2] }} "
+    )
+    text = canonical(f"hand : robot {{ {''.join(map(part.format, ('finger1', 'finger2', 'finger3')))} }}")
+    assert "  finger() : assembly {" in text
+    assert "finger2 : finger {}" in text
+
+
+def test_a_template_is_not_named_like_an_element() -> None:
+    text = canonical(f"biped : robot {{ leg {{}} pelvis {{}} {leg('left', '')} {leg('right', '-')} }}")
+    assert "leg2(name, side=1) : assembly {" in text
 
 
 def test_what_most_instances_give_is_the_default() -> None:
     legs = "".join(leg(side, "", lower=lower) for side, lower in (("a", "-20"), ("b", "-10"), ("c", "-10")))
     text = canonical(f"tripod : robot {{ pelvis {{}} {legs} }}")
-    assert "thigh_to_knee(name, limit=-10) : assembly {" in text
-    assert "a : thigh_to_knee(name=a limit=-20) {}\n  b : thigh_to_knee(name=b) {}" in text
+    assert "leg(name, limit=-10) : assembly {" in text
+    assert "a : leg(name=a limit=-20) {}\n  b : leg(name=b) {}" in text
 
 
 @pytest.mark.parametrize(
@@ -101,7 +117,7 @@ def test_what_most_instances_give_is_the_default() -> None:
     ids=["a comment in an element", "a comment between elements", "another structure", "a text like an expression"],
 )
 def test_what_a_template_could_not_say_is_written_out(other: str) -> None:
-    assert "thigh_to_knee" not in canonical(f"biped : robot {{ pelvis {{}} {leg('left', '')} {other} }}")
+    assert "leg(name" not in canonical(f"biped : robot {{ pelvis {{}} {leg('left', '')} {other} }}")
 
 
 @pytest.mark.parametrize("word", ["0.10", "1e-05", "007", "true", "in f", 'a"b', "-", "", "a\nb", "inf"])

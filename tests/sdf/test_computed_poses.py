@@ -46,3 +46,18 @@ def test_a_turned_axis_has_no_noise(tmp_path: Path) -> None:
     <axis><xyz expressed_in="f">1 0 0</xyz></axis></joint><frame name="f"><pose>0 0 0 0 0 1.5707963267948966</pose></frame></model></sdf>"""
     (tmp_path / "r.sdf").write_text(text, "utf-8")
     assert hx.load(tmp_path / "r.sdf").joints["j"].axis == (0.0, 1.0, 0.0)
+
+
+def test_the_usual_text_of_a_pose_is_no_part_of_the_robot(tmp_path: Path) -> None:
+    """Another text for the same place is, so that it comes back."""
+    places = ("0 0 -0.0425 0 0 0", "0 0 -.05 0 0 0", "0 0 0.1 0 0.5 0")
+    balls = "".join(
+        f'<visual name="v{number}"><pose>{place}</pose><geometry><sphere><radius>0.1</radius></sphere></geometry></visual>'
+        for number, place in enumerate(places)
+    )
+    file, text = tmp_path / "r.sdf", tmp_path / "r.hymeko"
+    file.write_text(f'<sdf version="1.9"><model name="r"><link name="a">{balls}</link></model></sdf>', "utf-8")
+    hx.convert(file, text)
+    assert text.read_text("utf-8").count("`sdf.pose`") == 2
+    hx.convert(text, tmp_path / "back.sdf")
+    assert all(f"<pose>{place}</pose>" in (tmp_path / "back.sdf").read_text("utf-8") for place in places)

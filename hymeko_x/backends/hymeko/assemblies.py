@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from hymeko_x.backends.hymeko.values import value_of
 from hymeko_x.factor.forms import Hole, Signed, words
 from hymeko_x.factor.unify import unify
+from hymeko_x.factor.words import limb_of_most, meaning
 from hymeko_x.formats.hymeko import AXES, RESERVED, ROLE_MOVES
 from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.mechanism import Id
@@ -170,7 +171,10 @@ _MOST_PARAMETERS = 16
 _MOST_ITEMS = 50_000
 """Larger mechanisms get no templates, which stay far below the reader's limit."""
 _NAMED_AFTER = frozenset({"mass", "com", "inertia", "at", "limit", "effort", "velocity", "damping", "friction", "scale", "rgba", "color"})
+_NAMED_AFTER |= {"axes", "anchor", "size", "fromto", "box", "sphere", "cylinder", "capsule", "armature", "stiffness", "ref"}
 """Fields after which a parameter may be called; the others are plain values."""
+_TEXTS_NAMED_AFTER = frozenset(("mesh", "material", "file"))
+"""Fields after which a parameter for texts of these alone is called; the others are names."""
 _SIGNS = ("side", "front", "flip")
 _WORD = re.compile(r"[A-Za-z]+")
 
@@ -192,8 +196,9 @@ def templates(pieces: Sequence[Piece], taken: set[str]) -> tuple[list[Node], lis
     for place, piece in enumerate(pieces):
         if piece.home and not _is_bound(piece):
             families.setdefault(_skeleton(piece), []).append(place)
+    elements = {*_names_of_items(pieces), *(piece.home for piece in pieces)}
     for places in families.values():
-        made = _template([pieces[place] for place in places], taken) if len(places) > 1 else None
+        made = _template([pieces[place] for place in places], taken, elements) if len(places) > 1 else None
         if made is not None:
             found.append(made[0])
             for place, instance in zip(places, made[1], strict=True):
@@ -211,8 +216,8 @@ def _skeleton(piece: Piece) -> str:
     return print_item(Node("", _filled(piece.items, lambda leaf: 0.0 if isinstance(leaf.value, float) else "")))
 
 
-def _template(pieces: list[Piece], taken: set[str]) -> tuple[Node, list[Node]] | None:
-    """The template of pieces with one skeleton and its instances; None where that is not shorter."""
+def _template(pieces: list[Piece], taken: set[str], elements: set[str]) -> tuple[Node, list[Node]] | None:
+    """The template of pieces with one skeleton and its instances, not named like an element; None where that is not shorter."""
     rows = [_leaves(piece.items) for piece in pieces]
     numbers = [[number_text(leaf.value) for leaf in row if isinstance(leaf.value, float)] for row in rows]
     texts = [[leaf.value for leaf in row if isinstance(leaf.value, str)] for row in rows]
@@ -221,7 +226,7 @@ def _template(pieces: list[Piece], taken: set[str]) -> tuple[Node, list[Node]] |
     if len(of_numbers.parameters) + len(of_texts.parameters) > _MOST_PARAMETERS:
         return None
     fields = [leaf.field for leaf in rows[0] if isinstance(leaf.value, float)]
-    names = _parameter_names(of_numbers, fields, len(of_texts.parameters))
+    names = _parameter_names(of_numbers, fields, of_texts, [leaf.field for leaf in rows[0] if isinstance(leaf.value, str)])
     values: list[tuple[Value, ...]] = [
         *(tuple(value_of(text) for text in vector) for vector in of_texts.parameters),
         *(tuple(float(str(text)) for text in vector) for vector in of_numbers.parameters),
@@ -229,7 +234,7 @@ def _template(pieces: list[Piece], taken: set[str]) -> tuple[Node, list[Node]] |
     plain = iter([_number(text, names[len(of_texts.parameters) :]) for text in of_numbers.texts])
     written = iter([_text(text, names) for text in of_texts.texts])
     body = _filled(pieces[0].items, lambda leaf: next(plain) if isinstance(leaf.value, float) else next(written))
-    name = take_name(_name(pieces[0]), {*taken})
+    name = take_name(_name(pieces), taken | elements)
     template = _with_defaults(Node(name, body, (Stereotype(Ref(("assembly",))),), ()), names, values)
     instances = [_instance(piece, template, values, place) for place, piece in enumerate(pieces)]
     before = sum(_letters(Node(piece.home, piece.items, template.stereotypes)) for piece in pieces)
@@ -267,10 +272,15 @@ def _letters(node: Node) -> int:
 # ---- names ---------------------------------------------------------------------------------------------------------------
 
 
-def _parameter_names(numbers: Unified, fields: list[str], texts: int) -> list[str]:
+def _parameter_names(numbers: Unified, fields: list[str], texts: Unified, text_fields: list[str]) -> list[str]:
     """Names for the texts, then for the numbers."""
     taken: set[str] = set()
-    names = [take_name("name", taken) for _ in range(texts)]
+    names = []
+    for number in range(len(texts.parameters)):
+        used = {
+            field for field, text in zip(text_fields, texts.texts, strict=True) if not isinstance(text, str) and Hole(str(number)) in text
+        }
+        names.append(take_name(used.pop() if len(used) == 1 and used < _TEXTS_NAMED_AFTER else "name", taken))
     for column, is_sign in zip(numbers.columns, numbers.is_sign, strict=True):
         field = fields[column]
         free = [sign for sign in _SIGNS if sign not in taken] if is_sign else []
@@ -285,12 +295,20 @@ def take_name(wanted: str, taken: set[str]) -> str:
     return name
 
 
-def _name(piece: Piece) -> str:
-    """From where to where the assembly leads: ``hip_to_foot``."""
-    named = [found[0].lower() for item in piece.items if isinstance(item, Node) and (found := _WORD.findall(item.name))]
+def _name(pieces: Sequence[Piece]) -> str:
+    """What the assemblies are, by their names or as a limb: ``finger``, ``leg``; else from where to where they lead: ``base_to_sensor``."""
+    names = _names_of_items(pieces[:1])
+    found = meaning([piece.home for piece in pieces]) or limb_of_most(names)
+    if found:
+        return found.lower()
+    named = [words[0].lower() for name in names if (words := _WORD.findall(name))]
     if not named:
         return "limb"
     return named[0] if named[0] == named[-1] else f"{named[0]}_to_{named[-1]}"
+
+
+def _names_of_items(pieces: Sequence[Piece]) -> list[str]:
+    return [item.name for piece in pieces for item in piece.items if isinstance(item, Node)]
 
 
 # ---- leaves --------------------------------------------------------------------------------------------------------------
@@ -326,15 +344,15 @@ def _filled(items: tuple[Item, ...], fill: Callable[[_Leaf], Value], *, within: 
     return tuple(done)
 
 
-def _filled_ref(ref: Ref, fill: Callable[[_Leaf], Value]) -> Ref:
-    return ref._replace(path=tuple(_filled_name(step, fill) for step in ref.path))
+def _filled_ref(ref: Ref, fill: Callable[[_Leaf], Value], field: str = "name") -> Ref:
+    return ref._replace(path=tuple(_filled_name(step, fill, field) for step in ref.path))
 
 
-def _filled_name(name: str, fill: Callable[[_Leaf], Value]) -> str:
+def _filled_name(name: str, fill: Callable[[_Leaf], Value], field: str = "name") -> str:
     """A name; a word with a meaning stays."""
     if name in _NO_NAMES:
         return name
-    text = fill(_Leaf(name, "name"))
+    text = fill(_Leaf(name, field))
     assert isinstance(text, str)
     return text
 
@@ -344,7 +362,7 @@ def _filled_value(value: Value, field: str, fill: Callable[[_Leaf], Value]) -> V
         return fill(_Leaf(value, field))
     if type(value) is tuple:
         return tuple(_filled_value(part, field, fill) for part in value)
-    return _filled_ref(value, fill) if isinstance(value, Ref) else value
+    return _filled_ref(value, fill, field) if isinstance(value, Ref) else value
 
 
 def _number(text: Text, names: list[str]) -> Value:

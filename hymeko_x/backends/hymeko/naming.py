@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from hymeko_x.backends.hymeko.elements import Element, Unit
-    from hymeko_x.language.syntax import Value
+    from hymeko_x.language.syntax import Node, Value
 
 _TYPES = {
     "visual": "visual",
@@ -39,7 +39,9 @@ _BEHIND = {"": "body", "@": "axis", "visual": "look", "collision": "hull"}
 """What stands behind other words instead, where that is shorter or not the word of a kind."""
 _TELLING = {"inertia [1 1 1]": "unit_inertia", "mode=trackcom": "tracking_camera"}
 """Names for what a stereotype gives alone."""
-_EFFORTS = ("effort", "forcerange", "ctrlrange")
+_GLOSS = frozenset(("specular", "shininess", "reflectance"))
+_SOLIDS = ("box", "sphere", "cylinder", "capsule", "ellipsoid")
+_EFFORTS = ("effort", "forcerange", "ctrlrange", "gainprm", "kp")
 _ROTATIONS = {"X": "roll", "Y": "pitch", "Z": "yaw"}
 _SHORT = 12
 """Letters of a name that is not too long to be used many times."""
@@ -48,11 +50,11 @@ _WORD = re.compile(r"[A-Za-z]\w{1,23}")
 
 
 def names(kind: str, units: Sequence[Unit], members: Sequence[Element]) -> Iterator[str]:
-    """Names for a stereotype with these units, the best first. The last one is the word for the type of its elements."""
+    """Names for a stereotype with these units, the best first. The last one may have a number behind it."""
     given = {unit.slot: name for unit in units if isinstance(unit.item, Field) and (name := _word(unit.item.value))}
     plain = _TYPES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
     behind = _BEHIND.get(kind, plain.removesuffix("_kind"))
-    found = [given.get("class", "")]
+    found = [given.get("class", ""), given.get("reason", "").lower()]
     texts = [unit.text for unit in units]
     if len(units) == 1:
         found += [given.get("material", ""), given.get("mesh", ""), f"{given['material']}_{behind}" if "material" in given else ""]
@@ -60,12 +62,26 @@ def names(kind: str, units: Sequence[Unit], members: Sequence[Element]) -> Itera
     found += _by_mesh(given.get("mesh", ""), members, behind)
     found += _by_owners(members, behind, is_inside=is_inside, sides=kind != "dof")
     found += [given.get("material", ""), given.get("mesh", ""), *(name for text, name in _TELLING.items() if [text] == texts)]
+    found += ["glossy"] if kind == "material" and {unit.slot for unit in units} <= _GLOSS else []
     yield from _by_place(units, members, behind)
     yield from sorted(filter(_WORD.fullmatch, found), key=lambda name: len(name) > _SHORT)
     yield plain
     if not is_inside or kind == "dof":
         yield from filter(_WORD.fullmatch, _by_values(units, plain))
-    yield plain
+        yield plain
+    else:
+        yield from filter(_WORD.fullmatch, _by_form(units, members, behind))
+        yield next(filter(_WORD.fullmatch, [f"{meaning([member.owner for member in members])}_{behind}"]), plain)
+
+
+def _by_form(units: Sequence[Unit], members: Sequence[Element], behind: str) -> Iterator[str]:
+    """Names of shapes whose bodies have given theirs to others: by their form, ``down_capsule``, or by the only body that has them."""
+    own = meaning([member.owner for member in members])
+    form = next((word for unit in units if (word := unit.text.partition(" ")[0]) in _SOLIDS), "")
+    if form:
+        yield f"{own}_{form}" if own else f"{form}_{behind}"
+    if len({(member.home, member.owner) for member in members}) == 1:
+        yield f"{members[0].owner}_{behind}"
 
 
 def _by_owners(members: Sequence[Element], behind: str, *, is_inside: bool, sides: bool) -> Iterator[str]:
@@ -99,11 +115,16 @@ def _by_assembly(members: Sequence[Element]) -> str:
 
 
 def _ends(members: Sequence[Element]) -> list[str]:
-    """The bodies to which joints lead that are called by number."""
+    """The bodies to which joints lead, or on which frames are, that are called by number or by their side."""
     if any(telling_words(member.owner) for member in members):
         return [""]
-    arcs = [[item for item in member.node.items if isinstance(item, ArcItem) and item.ref.direction == "-"] for member in members]
-    return [found[0].ref.path[-1] if member.node.edge and found else "" for member, found in zip(members, arcs, strict=True)]
+    return [_end(member.node) for member in members]
+
+
+def _end(node: Node) -> str:
+    """The body to which the arc of a joint leads, or from which that of a frame comes; empty for none."""
+    arcs = [item.ref for item in node.items if isinstance(item, ArcItem)]
+    return next((ref.path[-1] for ref in arcs if ref.direction == ("-" if node.edge else "+")), "")
 
 
 def _by_mesh(mesh: str, members: Sequence[Element], behind: str) -> Iterator[str]:

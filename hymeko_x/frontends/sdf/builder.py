@@ -14,7 +14,7 @@ from hymeko_x.formats.sdf.values import BadText, is_same_text, is_unit, read_pos
 from hymeko_x.frontends.sdf.frames import Frames
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Provenance
-from hymeko_x.ir.values import IDENTITY, Pose
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, Pose, numbers_text
 from hymeko_x.xml.unread import Unread
 
 if TYPE_CHECKING:
@@ -183,7 +183,8 @@ class SdfBuilder(Builder):
         if written.rotation_format == "quat_xyzw" and pose.written is not None and not is_unit(pose.written.numbers):
             message = f"{node.subject}: the quaternion of <pose> does not have unit length; it is normalised, which libsdformat does not do"
             self.warn(codes.NOT_UNIT, child, message)
-        self.note(key, notations.POSE, written)
+        if key.kind != "shape" or not _is_as_printed(written, pose):
+            self.note(key, notations.POSE, written)
         return pose, written.relative_to
 
     def base_of(self, node: Node, scope: str, name: str | None, default: Id) -> Id:
@@ -207,3 +208,8 @@ class SdfBuilder(Builder):
         self.add_extras(ROOT, *around)
         self.layout = [key for key in self.layout if key not in self.left]
         return self.build(name, Provenance(words.FORMAT, version, file))
+
+
+def _is_as_printed(written: WrittenPose, pose: Pose) -> bool:
+    """Whether a pose without rotation is written as the writer would write it."""
+    return pose.quat == NO_ROTATION and pose.xyz != ZERO and written == WrittenPose(text=f"{numbers_text(pose.xyz)} 0 0 0")
