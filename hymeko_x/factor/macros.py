@@ -167,10 +167,12 @@ class Namer:
         self._leaves = self._places(first, flat)
 
     def _places(self, first: int, flat: Flat) -> list[tuple[str, Form, str]]:
-        """For each column the tag around its form, its form and its leaf."""
+        """For each column the tag around its form, without those around nothing else, its form and its leaf."""
         found = []
         for offset, form in enumerate(self._forms):
             above = flat.up[first + offset] - first
+            while above >= 0 and _is_wrapper(self._forms[above]) and flat.up[first + above] >= first:
+                above = flat.up[first + above] - first
             around = self._forms[above].tag if above >= 0 else form.tag
             found += [(around, form, leaf) for leaf in form.leaves]
         return found
@@ -210,12 +212,14 @@ class Namer:
         if len(tops) == 1:
             content = _content(tops[0])
             other = [identifier(f"{content}_{tops[0].tag}")] if content else []
-            return [identifier("_".join([*shared[0], tops[0].tag])), *other, identifier(tops[0].tag)]
+            own = shared[0] if shared[0][-1:] == [tops[0].tag] else [*shared[0], tops[0].tag]
+            return [identifier("_".join(own)), *other, identifier(tops[0].tag)]
         named = [words for words in shared if words]
         if (part := limb_of_most(["_".join(words) for words in named])) and len(named) > _FEWEST_OF_LIMB:
             return [part]
         if not named:
-            return [identifier(f"{self._around}_parts" if self._around else f"{tops[0].tag}_group")]
+            inside = [identifier(f"{child.tag}_{top.tag}") for top in tops if _is_wrapper(top) for child in top.children]
+            return inside[:1] or [identifier(f"{self._around}_parts" if self._around else f"{tops[0].tag}_group")]
         common = [word for word in named[0] if all(word in words for words in named)]
         if common:
             return [identifier("_".join(common))]
@@ -234,9 +238,14 @@ class Namer:
         return [word.lower() for piece in pieces for word in re.findall(r"[A-Za-z][A-Za-z0-9]*", piece)][:3]
 
 
+def _is_wrapper(form: Form) -> bool:
+    """Whether a form is around one other and has no texts, as ``<geometry>`` is."""
+    return not form.leaves and len(form.children) == 1
+
+
 def _content(form: Form) -> str:
     """The tag of what a form is about: that of the only child of a form without texts of its own; empty for none."""
-    inside = [child.children[0].tag for child in form.children if not child.leaves and len(child.children) == 1]
+    inside = [inner.tag for child in form.children if _is_wrapper(child) for inner in child.children]
     return inside[0] if len(inside) == 1 else ""
 
 

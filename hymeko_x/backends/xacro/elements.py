@@ -147,7 +147,7 @@ _LEAVES = {"xyz": "xyz", "rpy": "rpy", "value": "", "name": "", "link": "", "rgb
 
 
 def _leaf_name(tag: str, leaf: str) -> str:
-    return _LEAVES.get(leaf, leaf) or tag
+    return tag if (tag, leaf) == ("axis", "xyz") else _LEAVES.get(leaf, leaf) or tag
 
 
 DIALECT = Dialect(
