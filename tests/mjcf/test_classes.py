@@ -60,6 +60,21 @@ def test_what_legs_share_is_in_classes_called_after_their_parts() -> None:
     assert '<geom class="collision" type="sphere" size="0.0625"/>' in text
 
 
+def test_parts_of_a_limb_that_share_the_same_are_one_class() -> None:
+    """Four hips and four ankles, which had a class each with the same attributes."""
+    joint = '<joint name="{0}_{1}" type="revolute"><parent link="base"/><child link="{0}_{1}"/><axis xyz="0 1 0"/>{2}</joint>'
+    limit = '<limit lower="-1.0625" upper="1.0625" effort="40" velocity="10"/><dynamics damping="0.125"/>'
+    other = '<limit lower="0" upper="1" effort="7" velocity="10"/>'
+    parts = [(side, part, limit) for side in ("lf", "rf", "lh", "rh") for part in ("hip", "ankle")]
+    parts += [(side, part, other) for side in ("lf", "rf", "lh", "rh") for part in ("lid", "cap", "horn")]
+    mass = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    links = "".join(f'<link name="{side}_{part}">{mass}</link>{joint.format(side, part, inside)}' for side, part, inside in parts)
+    text = hx.dumps(hx.loads(f'<robot name="q"><link name="base"/>{links}</robot>', "urdf"), "mjcf")
+    assert '<default class="leg">\n      <joint range="-1.0625 1.0625" damping="0.125" actuatorfrcrange="-40 40"/>' in text
+    assert '<joint name="rh_ankle" class="leg"/>' in text
+    assert 'class="hip"' not in text
+
+
 def test_actuators_share_a_class_as_well() -> None:
     text = hx.dumps(hx.loads(QUADRUPED, "urdf"), "mjcf", actuators="position")
     assert '<position kp="400" kv="40" ctrlrange="-0.03125 0.03125"/>\n' in text[: text.index("<asset>")]

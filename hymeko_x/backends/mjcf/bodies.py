@@ -16,6 +16,7 @@ from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Role
 from hymeko_x.ir.values import IDENTITY, compose, inverse
+from hymeko_x.rewrite.decimals import clean_pose
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
@@ -75,7 +76,9 @@ def _add_inertial(sheet: MjcfSheet, body: BodyTag, inertial: Inertial) -> None:
 
 def _add_body(sheet: MjcfSheet, outer: BodyTag, key: Id, view: JointView | None) -> BodyTag:
     """A body without its content: its pose at the reference configuration is P C^-1 in its parent."""
-    pose = IDENTITY if view is None else compose(view.parent_pose, inverse(view.child_pose))
+    pose = IDENTITY if view is None else view.parent_pose
+    if view is not None and view.child_pose != IDENTITY:
+        pose = clean_pose(compose(pose, inverse(view.child_pose)))
     notations, kept = sheet.notations(key), sheet.kept_attributes(key)
     frame = outer.frame(sheet.note(key, frame_of()))
     groups = _POSE if frame is None else (seen_from(POSE, frame.pose),)

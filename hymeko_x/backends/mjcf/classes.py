@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct, field
 
 from hymeko_x.factor.sets import Costs, share
-from hymeko_x.factor.words import by_meaning, words_of_all
+from hymeko_x.factor.words import by_meaning, limb, words_of_all
 from hymeko_x.formats.mjcf import CLASSES, MAIN
 from hymeko_x.formats.mjcf.classes import PARTIAL, Classes
 from hymeko_x.formats.mjcf.roles import ATTRIBUTES
@@ -148,10 +148,22 @@ def _share_among_some(tag: str, own_class: str | None, group: list[Tag], default
     plain = words_of_all(_names(group)) if found and len(group) > _FEWEST else frozenset[str]()
     for shared in found:
         members = [group[member] for member in shared.members]
-        for words, places in by_meaning(_names(members), _FEWEST, plain):
-            _make_class(tag, own_class, words, [members[place] for place in places], defaults)
+        groups = [(words, [members[place] for place in places]) for words, places in by_meaning(_names(members), _FEWEST, plain)]
+        for words, alike in _as_one_limb(groups) or groups:
+            _make_class(tag, own_class, words, alike, defaults)
     order = {name: place for place, element in reversed([*enumerate(group)]) if (name := element.attributes.get("class"))}
     defaults.classes[start:] = sorted(defaults.classes[start:], key=lambda found: order.get(found.name, -1))
+
+
+def _as_one_limb(groups: list[tuple[str, list[Tag]]]) -> list[tuple[str, list[Tag]]]:
+    """Groups that would have equal classes as one, called after the limb of which all are parts; nothing where there is none."""
+    everyone = [element for _, alike in groups for element in alike]
+    word = limb(_names(everyone)) if len(groups) > 1 else ""
+    return [(word, everyone)] if word and all(_common(alike) == _common(everyone) for _, alike in groups) else []
+
+
+def _common(elements: list[Tag]) -> frozenset[tuple[str, str]]:
+    return frozenset(_row(elements[0])).intersection(*map(_row, elements[1:]))
 
 
 def _names(elements: list[Tag]) -> list[str]:
@@ -161,7 +173,7 @@ def _names(elements: list[Tag]) -> list[str]:
 def _make_class(tag: str, own_class: str | None, words: str, members: list[Tag], defaults: Defaults) -> None:
     """A class for what these elements share, in the class that they have, which is the same for all."""
     given = members[0].attributes.get("class")
-    common = frozenset(_row(members[0])).intersection(*map(_row, members[1:]))
+    common = _common(members)
     own = {name: text for name, text in _row(members[0]) if (name, text) in common}
     if not own or any(element.attributes.get("class") != given for element in members):
         return  # the class around has them already
