@@ -87,6 +87,16 @@ def test_a_body_whose_prim_is_its_geometry_with_what_is_below_it_and_joints_in_i
     assert mechanism.graph.edges[Id("mount", "tip")].arcs[0].weight.xyz == pytest.approx((0, 0, 0.2))  # type: ignore[union-attr]
 
 
+@pytest.mark.parametrize("schemas", ["MjcSiteAPI", "NewtonSiteAPI", "MjcSiteAPI NewtonSiteAPI"])
+def test_a_site_has_the_schemas_that_its_author_gave_it(schemas: str) -> None:
+    listed = ", ".join(f'"{schema}"' for schema in schemas.split())
+    mechanism = read_text(robot(body("a", f'    def Xform "tip" (prepend apiSchemas = [{listed}])\n    {{\n    }}\n')))
+    assert Id("frame", "tip") not in mechanism.extras
+    assert f"prepend apiSchemas = [{listed}]\n" in written(mechanism).decode()
+    losses = pipeline.convert(mechanism, formats.URDF, Options(), NoFiles(), Report()).losses or ()
+    assert [loss.field for loss in losses if loss.element == "frame 'tip'"] == [""]
+
+
 def test_values_that_say_no_more_than_the_default(tmp_path: Path) -> None:
     limits = (
         "    float physics:lowerLimit = -inf\n    float physics:upperLimit = 0\n    uniform double mjc:damping = 0\n"

@@ -36,7 +36,7 @@ def write_mounts(sheet: UsdSheet) -> None:
         spec = sheet.add_prim(view.thing, home, _type_of(part), below=view.body != WORLD)
         sheet.paths[view.id] = spec.path
         sheet.set_pose(spec, view.pose, on=view.body)
-        _write_mounted(spec, part)
+        _write_mounted(spec, part, sheet.mechanism.notation(view.thing, words.SITE))
         if isinstance(part, Frame) and view.thing in knots and sheet.mechanism.notation(view.thing, words.PATH) is None:
             _write_ball(spec, part.size[0] if part.size and part.size[0] > 0.0 else _SITE_SIZE)
 
@@ -59,10 +59,10 @@ def _type_of(part: Frame | Camera | Light) -> str:
             return next((name for name, meant in words.LIGHTS.items() if meant == kind), "SphereLight")
 
 
-def _write_mounted(spec: Any, part: Frame | Camera | Light) -> None:
-    """The schemas and attributes of a frame, a camera or a light beside its pose."""
+def _write_mounted(spec: Any, part: Frame | Camera | Light, site: str | None) -> None:
+    """The schemas and attributes of a frame, a camera or a light beside its pose. ``site``: the one schema of a frame's author."""
     if isinstance(part, Frame):
-        apply(spec, *words.SITES)
+        apply(spec, *(words.SITES if site is None else (site,)))
     elif isinstance(part, Light):
         if part.kind == "spot":
             apply(spec, words.CONE)

@@ -25,6 +25,8 @@ REVERSED = flag("usd.reversed")
 """The notation of a joint whose parent in the tree is its ``body1``."""
 EQUALITY = flag("usd.equality")
 """The notation of a coupling that has MuJoCo's schema alone, without Newton's."""
+SITE = word("usd.site")
+"""The notation of a frame that has one schema for sites alone, with the name of it."""
 PHYSX = words("usd.physx")
 """The notation of a joint with the names of its values that PhysX' schema has too, in a stage that is not neutral."""
 NORMALS = flag("usd.normals", "faces")

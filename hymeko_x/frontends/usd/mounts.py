@@ -20,11 +20,14 @@ if TYPE_CHECKING:
 
 
 def read_site(prim: Prim, builder: UsdBuilder) -> None:
-    """A frame at the prim, which is all that it is if it has the type and schemas that the writer sets; a gprim of it stays an extra."""
+    """A frame at the prim, which is all that it is if it has the type that the writer sets; a gprim of it stays an extra."""
     key = builder.new_id(prim, "frame")
     builder.vertices[key] = Frame()
-    if prim.kind == "Xform" and all(map(prim.has_api, words.SITES)):
-        builder.mark_read(prim, "@type", *(f"@{schema}" for schema in words.SITES))
+    if prim.kind == "Xform":
+        schemas = [schema for schema in words.SITES if prim.has_api(schema)]
+        builder.mark_read(prim, "@type", *(f"@{schema}" for schema in schemas))
+        if len(schemas) < len(words.SITES):
+            builder.note(key, words.SITE, schemas[0])
     mount(prim, key, builder)
 
 
