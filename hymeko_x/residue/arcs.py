@@ -1,4 +1,4 @@
-"""The arcs of an edge that has more or fewer in the image: they are put in as a whole, with the weights that were edited since."""
+"""The arcs of an edge when its residue is put in: with the weights that were edited since, and notations that mean these."""
 
 from __future__ import annotations
 
@@ -6,13 +6,18 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from hymeko_x.ir.decimals import shortest_of
 from hymeko_x.ir.graph import Edge
+from hymeko_x.ir.values import Pose, Written
+from hymeko_x.ir.written import between_ends, length_of
 from hymeko_x.residue.alike import is_alike
 
 if TYPE_CHECKING:
-    from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.ir.mechanism import Id, RobotArc, RobotEdge
     from hymeko_x.residue import Change
 
+_ROUNDING = 1e-9
+"""In m: how far a point is from where its place has it, after angles and lengths in decimals."""
 ARCS = ("arcs",)
 """The path of all arcs of an edge."""
 
@@ -37,3 +42,29 @@ def with_edited_weights(part: object, change: Change) -> Change:
             return change
         arcs.append(replace(arc, weight=now.weight))
     return change if edited else change._replace(there=part.arcs, value=tuple(arcs))
+
+
+def with_own_ends(edge: RobotEdge) -> RobotEdge:
+    """The edge, of whose arcs those that are written as two points (``fromto``) have the points of their place as it is now.
+
+    The points are part of what is kept, and the place, or the length of the shape, may have been edited since.
+    """
+    length = getattr(getattr(edge.data, "geometry", None), "length", None)
+    arcs = tuple([_with_ends(arc, length) for arc in edge.arcs])
+    return Edge(edge.data, arcs)
+
+
+def _with_ends(arc: RobotArc, length: float | None) -> RobotArc:
+    pose = arc.weight
+    if not isinstance(pose, Pose) or pose.written is None or pose.written.kind != "fromto":
+        return arc
+    own = between_ends(pose, length_of(pose.written) if length is None else length).written
+    assert own is not None
+    if all(map(_is_near, own.numbers, pose.written.numbers)):
+        return arc
+    return replace(arc, weight=replace(pose, written=Written("fromto", shortest_of(own.numbers))))
+
+
+def _is_near(a: float, b: float) -> bool:
+    """Whether two coordinates in m are the same but for rounding."""
+    return abs(a - b) <= _ROUNDING

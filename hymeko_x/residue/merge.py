@@ -17,7 +17,7 @@ from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Shape, Texture
 from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.alike import URI, holds, is_alike, is_moved
-from hymeko_x.residue.arcs import with_edited_weights
+from hymeko_x.residue.arcs import with_edited_weights, with_own_ends
 from hymeko_x.residue.landmarks import renamed_since
 from hymeko_x.residue.parts import GEOMETRY, broken, parts_of
 from hymeko_x.residue.realign import realign, with_new_names, with_old_names
@@ -114,7 +114,7 @@ class _Merge:
             elif key in self.vertices:
                 self.vertices[key] = self._changed(key, self.vertices[key], changes)
             elif key in self.edges:
-                self.edges[key] = self._changed(key, self.edges[key], changes)
+                self.edges[key] = with_own_ends(self._changed(key, self.edges[key], changes))
             else:
                 self._note(key, "is gone, and with it what was kept for it")
         return name

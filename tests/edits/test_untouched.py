@@ -120,3 +120,35 @@ def test_a_fragment_that_lost_more_comments_is_the_same_fragment() -> None:
     source, image, edited = (hx.loads(text, "urdf").mechanism for text in (one, LAMP, two))
     assert len({robot.extras[ROOT] for robot in (source, image, edited)}) == 3
     assert restore(edited, residue_of(source, image), Report()).mechanism.extras == source.extras
+
+
+ROD = """<mujoco model="rod">
+  <worldbody>
+    <body name="rod">
+      <freejoint/>
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      <geom name="side" type="capsule" fromto="0 0 0 0 0 1" size="0.1"/>
+      <site name="tip" type="capsule" fromto="0 0 1 0 0 1.2" size="0.01"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101", "HX118")  # the extent of the longer capsule is its author's
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [
+        ((r'(Capsule "side".*?translate = )\(0, 0, 0.5\)', r"\1(0.2, 0, 0.5)"), ("0 0 0 0 0 1", "0.2 0 0 0.2 0 1")),
+        ((r'(Capsule "side".*?height = )1', r"\g<1>0.5"), ("0 0 0 0 0 1", "0 0 0.25 0 0 0.75")),
+        ((r'("tip".*?translate = )\(0, 0, 1.1\)', r"\1(0, 0, 2.1)"), ("0 0 1 0 0 1.2", "0 0 2 0 0 2.2")),
+    ],
+)
+def test_two_points_between_which_a_shape_is_move_with_it(change: tuple[str, str], line: tuple[str, str], tmp_path: Path) -> None:
+    (tmp_path / "rod.xml").write_text(ROD)
+    hx.convert(tmp_path / "rod.xml", tmp_path / "rod.usda")
+    text, number = re.subn(change[0], change[1], (tmp_path / "rod.usda").read_text(), count=1, flags=re.DOTALL)
+    assert number == 1
+    (tmp_path / "rod.usda").write_text(text)
+    hx.update(tmp_path / "rod.xml", tmp_path / "rod.usda")
+    assert (tmp_path / "rod.xml").read_text() == ROD.replace(f'fromto="{line[0]}"', f'fromto="{line[1]}"')
