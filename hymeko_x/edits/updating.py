@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from hymeko_x.compare.diff import Difference
     from hymeko_x.edits.conversion import Left
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
     from hymeko_x.ir.parts import VertexPart
     from hymeko_x.source import Source
 
@@ -247,12 +247,22 @@ def _is_given_again(edit: Difference) -> bool:
 
 
 def _is_hidden_material(edit: Difference, after: Mechanism) -> bool:
-    """Whether an edit gives a shape a material without images that the shape's own colour hides, as a note of the writer reports."""
-    edge = after.graph.edges.get(edit.element)
-    if edge is None or not isinstance(edge.data, Shape) or edge.data.rgba is None or not (edit.after or "").startswith("~ material "):
+    """Whether an edit is of a material without images that the own colours of its shapes hide, as a note of the writer reports.
+
+    It adds the material itself, or gives it to a shape.
+    """
+    key, graph = edit.element, after.graph
+    if key.kind == "material" and not edit.field:
+        return all(_has_own_colour(graph.edges.get(found.edge)) for found in graph.incidence.get(key, ()))
+    edge = graph.edges.get(key)
+    if edge is None or not _has_own_colour(edge) or not (edit.after or "").startswith("~ material "):
         return False
     materials = [arc.target for arc in edge.arcs if arc.role == "material"]
-    return not any(found.edge.kind == "layer" for material in materials for found in after.graph.incidence.get(material, ()))
+    return not any(found.edge.kind == "layer" for material in materials for found in graph.incidence.get(material, ()))
+
+
+def _has_own_colour(edge: RobotEdge | None) -> bool:
+    return edge is not None and isinstance(edge.data, Shape) and edge.data.rgba is not None
 
 
 def _is_inherited(edit: Difference) -> bool:

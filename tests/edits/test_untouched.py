@@ -105,6 +105,30 @@ def test_a_colour_in_place_of_a_material_is_no_edit_that_is_lost(tmp_path: Path)
     )
 
 
+ARM = """<robot name="arm">
+  <link name="a">
+    <visual><geometry><sphere radius="0.1"/></geometry><material name="red"><color rgba="1 0 0 1"/></material></visual>
+  </link>
+  <link name="b">
+    <visual><geometry><sphere radius="0.1"/></geometry><material name="blue"><color rgba="0 0 1 1"/></material></visual>
+  </link>
+  <joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
+</robot>
+"""
+
+
+@pytest.mark.unread("HX101")
+def test_a_material_that_only_the_painted_shape_had_is_no_edit_that_is_lost(tmp_path: Path) -> None:
+    """It is gone from the URDF with its shape, and the MJCF file still has it."""
+    original, there = tmp_path / "arm.urdf", tmp_path / "arm.xml"
+    original.write_text(ARM)
+    hx.convert(original, there)
+    there.write_text(there.read_text().replace(' material="blue"/>', ' material="blue" rgba="0 1 0 1"/>'))
+    report = hx.update(original, there).report
+    assert [str(row) for row in report if row.code.id == "HX118"] == []
+    assert original.read_text() == ARM.replace('"blue"', '""').replace("0 0 1 1", "0 1 0 1")
+
+
 @pytest.mark.unread("HX101", "HX105", "HX201", "HX204")
 def test_what_rounding_leaves_of_zero_is_no_edit(tmp_path: Path) -> None:
     """Programs that compose poses and take them apart again write 3e-17 m for 0."""
