@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hymeko_x.residue import Change
 
 _ROUNDING = 1e-9
-"""In m: how far a point is from where its place has it, after angles and lengths in decimals."""
+"""How far a point may be from where its place has it, in m, or as a part of its largest coordinate."""
 ARCS = ("arcs",)
 """The path of all arcs of an edge."""
 
@@ -47,24 +47,18 @@ def with_edited_weights(part: object, change: Change) -> Change:
 def with_own_ends(edge: RobotEdge) -> RobotEdge:
     """The edge, of whose arcs those that are written as two points (``fromto``) have the points of their place as it is now.
 
-    The points are part of what is kept, and the place, or the length of the shape, may have been edited since.
+    The points are part of what is kept, and the place may have been edited since.
     """
-    length = getattr(getattr(edge.data, "geometry", None), "length", None)
-    arcs = tuple([_with_ends(arc, length) for arc in edge.arcs])
-    return Edge(edge.data, arcs)
+    return Edge(edge.data, tuple([_with_ends(arc) for arc in edge.arcs]))
 
 
-def _with_ends(arc: RobotArc, length: float | None) -> RobotArc:
+def _with_ends(arc: RobotArc) -> RobotArc:
     pose = arc.weight
     if not isinstance(pose, Pose) or pose.written is None or pose.written.kind != "fromto":
         return arc
-    own = between_ends(pose, length_of(pose.written) if length is None else length).written
+    kept, own = pose.written.numbers, between_ends(pose, length_of(pose.written)).written
     assert own is not None
-    if all(map(_is_near, own.numbers, pose.written.numbers)):
+    room = _ROUNDING * max(1.0, *map(abs, kept))
+    if all(abs(a - b) <= room for a, b in zip(own.numbers, kept, strict=True)):
         return arc
     return replace(arc, weight=replace(pose, written=Written("fromto", shortest_of(own.numbers))))
-
-
-def _is_near(a: float, b: float) -> bool:
-    """Whether two coordinates in m are the same but for rounding."""
-    return abs(a - b) <= _ROUNDING
