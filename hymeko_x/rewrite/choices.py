@@ -13,7 +13,7 @@ from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Coupling, Dof, DofKind, Drive, Joint
 from hymeko_x.ir.values import Z
-from hymeko_x.rewrite.actuators import MUJOCO_KINDS, without_actuators
+from hymeko_x.rewrite.actuators import MUJOCO_KINDS, with_sensors, without_actuators
 from hymeko_x.rewrite.collisions import make_collisions_convex
 from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.densities import WATER, give_inertials
@@ -108,7 +108,7 @@ def with_actuators(mechanism: Mechanism, kind: str, report: Report) -> Mechanism
         report.note(
             codes.REWRITTEN, f"{counted(len(present), 'actuator')} of the source {what}, as asked", element=str(next(iter(present)))
         )
-    return bare.replace(vertices=vertices, edges=edges)
+    return with_sensors(bare.replace(vertices=vertices, edges=edges), mechanism, report)
 
 
 def _report_gains(mechanism: Mechanism, carried: Mapping[tuple[Id, int], Load], report: Report) -> None:

@@ -73,3 +73,47 @@ def test_a_servo_asks_for_all_effort_at_a_hundredth_at_the_soonest() -> None:
 def test_home_is_the_reference_or_the_limit_next_to_it() -> None:
     dofs = [hinge(axis=Z, limits=Limits(*span)).dofs[0] for span in ((-1.0, 1.0), (0.5, 1.0), (-2.0, -0.5), (None, None), (1.0, -1.0))]
     assert [home(dof) for dof in dofs] == [0.0, 0.5, -0.5, 0.0, 0.0]
+
+
+MEASURED = """<mujoco model="s">
+  <worldbody>
+    <body name="a"><joint name="j"/><geom size="0.1"/></body>
+    <body name="b"><joint name="k"/><geom size="0.1"/></body>
+  </worldbody>
+  <tendon><fixed name="t"><joint joint="j" coef="1"/></fixed></tendon>
+  <actuator>
+    <general name="A_j" joint="j" gainprm="3"/>
+    <motor name="A_t" tendon="t"/>
+  </actuator>
+  <sensor>
+    <actuatorfrc name="of_j" actuator="A_j"/>
+    <actuatorpos name="of_t" actuator="A_t"/>
+    <jointpos name="place" joint="j"/>
+  </sensor>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101", "HX114")
+@pytest.mark.parametrize(("kind", "left"), [("position", ["of_j", "place"]), ("motor", ["of_j", "place"]), ("none", ["place"])])
+def test_sensors_measure_the_actuators_that_are_asked_for(kind: str, left: list[str], tmp_path: Path) -> None:
+    (tmp_path / "s.xml").write_text(MEASURED)
+    report = hx.convert(tmp_path / "s.xml", tmp_path / "t.xml", actuators=kind).report  # type: ignore[arg-type]
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "t.xml"))
+    assert [model.sensor(number).name for number in range(model.nsensor)] == left
+    if kind != "none":
+        assert model.actuator(model.sensor("of_j").objid[0]).name == "j"
+    lost = [name for name in ("of_j", "of_t") if name not in left]
+    assert [row.message for row in report if "measure:" in row.message] == [
+        f"{len(lost)} sensor{'s' if len(lost) > 1 else ''} left out with the actuators that they measure: {', '.join(map(repr, lost))}"
+    ]
+    assert hx.convert(tmp_path / "s.xml", tmp_path / "t.hymeko", actuators=kind)  # type: ignore[arg-type]
+
+
+@pytest.mark.unread("HX101", "HX104", "HX114", "HX025")
+def test_a_sensor_of_an_actuator_that_mjcf_does_not_have_is_left_out(tmp_path: Path) -> None:
+    (tmp_path / "s.hymeko").write_text(
+        "s : robot {\n  a { mass 1 inertia [1 1 1] }\n  @j { + world - a }\n  n : motor { }\n  f : sensor.actuatorfrc { + n }\n}\n"
+    )
+    hx.convert(tmp_path / "s.hymeko", tmp_path / "s.xml")
+    assert mujoco.MjModel.from_xml_path(str(tmp_path / "s.xml")).nsensor == 0
