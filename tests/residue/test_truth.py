@@ -193,18 +193,23 @@ usemtl blue\nf 1 3 4\nf 2 3 4
 
 
 @pytest.mark.parametrize("keep", ["beside", "inside"])
-def test_what_is_kept_of_a_mesh_in_several_parts_holds_in_another_folder(keep: Any, tmp_path: Path) -> None:
-    (tmp_path / "two.obj").write_text(TWO_COLOURS)
+@pytest.mark.parametrize("number", [1, 5])
+def test_what_is_kept_of_a_mesh_in_several_parts_holds_in_another_folder(keep: Any, number: int, tmp_path: Path) -> None:
+    """MJCF names the folder of many meshes in <compiler>, and only there."""
+    names = [f"two{place}.obj" for place in range(number)]
+    for name in names:
+        (tmp_path / name).write_text(TWO_COLOURS)
     (tmp_path / "two.mtl").write_text("newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n")
-    (tmp_path / "r.urdf").write_text(
-        '<robot name="r"><link name="a"><visual><geometry><mesh filename="two.obj"/></geometry></visual></link></robot>'
-    )
+    visuals = "".join(f'<visual><geometry><mesh filename="{name}"/></geometry></visual>' for name in names)
+    (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="a">{visuals}</link></robot>')
     first, second = tmp_path / "a" / "r.xml", tmp_path / "b" / "c" / "r.xml"
     for path in (first, second):
         path.parent.mkdir(parents=True)
     hx.convert(tmp_path / "r.urdf", first, keep=keep, assets="reference")
     hx.convert(first, second, keep=keep, assets="reference")
-    assert first.read_text().count("<mesh ") == second.read_text().count("<mesh ") == 2
+    assert first.read_text().count("<mesh ") == second.read_text().count("<mesh ") == 2 * number
+    compilers = [path.read_text().partition("<compiler")[2].partition("/>")[0] for path in (first, second)]
+    assert ["meshdir" in compiler for compiler in compilers] == [number > 1, False]
     a, b = (hx.load(path).mechanism for path in (first, second))
-    assert [part.uri for _, part in b.assets()] == [part.uri for _, part in a.assets()] == ["two.obj"]
+    assert [part.uri for _, part in b.assets()] == [part.uri for _, part in a.assets()] == names
     assert faults(a, b, "mjcf") == []

@@ -170,6 +170,12 @@ _IN_ELEMENTS = re.compile(
 """Attributes in a default class that each of its elements has in a field of its own when it is read."""
 
 
+_FOLDERS = re.compile(r'\s(?:assetdir|meshdir|texturedir)="[^"]*"')
+"""Attributes of <compiler> that are part of the path of each file."""
+
+
 def without_inherited(text: str) -> str:
-    """An element of the file; of default classes only what no element has in a field."""
+    """An element of the file; of default classes only what no element has in a field, of <compiler> what no file has in its path."""
+    if text.startswith("<compiler"):
+        return _FOLDERS.sub("", text)
     return _IN_ELEMENTS.sub("", text) if text.startswith("<default") else text
