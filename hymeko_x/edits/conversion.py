@@ -144,19 +144,23 @@ class Conversion:
     def unmet(self) -> Iterator[tuple[Id, str]]:
         """What EDITED has and ORIGINAL, as it was converted last, does not have: by the element of ORIGINAL, in words.
 
-        Both files are compared name by name, so that no way to see two robots as the same one hides an edit. It counts what EDITED was
-        edited to have, and every other value of a shape that was not edited. Names that did not arrive, and what has several forms of one
-        meaning, are reported by :meth:`left`.
+        Both files are compared name by name, so that no way to see two robots as the same one hides an edit; only shapes without names,
+        which may have another number, are found by what they are. It counts what EDITED was edited to have, and every other value of a
+        shape that was not edited. Names that did not arrive, and what has several forms of one meaning, are reported by :meth:`left`.
         """
         assert self._used is not None
         image = self._used.image
         names = self._renames(image)
         edited = self._under(names, self.edited, image) if names.every else self.edited
         touched = {element for element, _, _ in self._asked or ()}
+        numbered = reordered_shapes(edited, image)
+        rest = diff(image, rename(edited, numbered), TOLERANCE)
+        left = frozenset(map(_aim, rest))
         for edit in diff(image, edited, TOLERANCE):
-            if _aim(edit) in (self._asked or ()) and not _has_other_forms(edit):
+            is_there = edit.element.kind == "shape" and (numbered.get(edit.element, edit.element), *_aim(edit)[1:]) not in left
+            if _aim(edit) in (self._asked or ()) and not _has_other_forms(edit) and not is_there:
                 yield self._homes.get(edit.element, edit.element), f"the edit did not arrive: {edit}"
-        for edit in diff(image, rename(edited, reordered_shapes(edited, image)), TOLERANCE):
+        for edit in rest:
             if edit.element not in touched and _is_value_of_shape(edit):
                 words = f"it changed with the edits: {edit.element} {edit.field} is {edit.before}, and {edit.after} in the edited file"
                 yield self._homes.get(edit.element, edit.element), words

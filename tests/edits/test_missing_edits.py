@@ -157,3 +157,28 @@ def test_a_colour_of_the_collision_alone_of_a_geom_that_is_both_is_reported(own:
     (tmp_path / "pad.urdf").write_text(start + collision + rest)
     found = hx.update(tmp_path / "pad.xml", tmp_path / "pad.urdf", dry_run=True)
     assert [row.message for row in found.report if row.code.id == "HX118"] == [f"the edit did not arrive: shape 'world/collision' {words}"]
+
+
+TWO = """<mujoco model="r">
+  <worldbody>
+    <body name="a">
+      <freejoint/>
+      <geom name="one" size="0.1"/>
+      <geom name="two" size="0.2" pos="1 0 0"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101", "HX102", "HX104", "HX105")
+def test_a_collision_that_becomes_a_geom_of_its_own_and_the_first_one_arrives(tmp_path: Path) -> None:
+    """The collision of the geom before it stands behind it then."""
+    (tmp_path / "r.xml").write_text(TWO)
+    hx.convert(tmp_path / "r.xml", tmp_path / "r.sdf")
+    start, collision, rest = (tmp_path / "r.sdf").read_text().partition('<collision name="two_collision">')
+    (tmp_path / "r.sdf").write_text(start + collision + rest.replace("<radius>0.2", "<radius>0.3", 1))
+    report = hx.update(tmp_path / "r.xml", tmp_path / "r.sdf").report
+    assert [row.message for row in report if row.code.id == "HX118"] == []
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "r.xml"))
+    assert sorted(float(size) for size in model.geom_size[:, 0]) == [0.1, 0.2, 0.3]
