@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import DecodeError, json
 
 from hymeko_x.verify.model import Surface
 
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 _OTHER_INDICES = re.compile(rb"/[-\d/]*")
 _IN_NUMBERS = b"0123456789+-.eE \t\r\n"
 _POINT, _FACE = b"v ", b"f "
+_WANTED = (_POINT, _FACE)
+_NEWLINE = ord("\n")
 _BEGINNINGS = frozenset((_POINT, _FACE, b"vn", b"vt", b"o ", b"g ", b"s ", b"us", b"mt", b"l ", b"# ", b"##", b"#\r", b"#", b"\r", b""))
 """The first two letters of the lines that nearly all files have."""
 
@@ -38,30 +42,59 @@ def read_stl(data: bytes) -> Surface | None:
 
 def read_obj(data: bytes) -> Surface | None:
     """The triangles of a file; larger faces as fans. None where it has rare or continued lines, relative indices or broken ones."""
-    lines: dict[bytes, list[bytes]] = defaultdict(list)
-    for line in data.split(b"\n"):
-        lines[line[:2]].append(line)
-    if b"\\" in data or not lines.keys() <= _BEGINNINGS:
+    lines = None if b"\\" in data else _lines_of(data)
+    if lines is None:
         return None
-    points = _points(lines[_POINT])
-    triangles, polygons = _triangles(lines[_FACE])
+    points = _points(lines.get(_POINT, b""))
+    triangles, polygons = _triangles(lines.get(_FACE, b""))
     if points is None or triangles is None or not len(triangles) or triangles.min() < 1 or triangles.max() > len(points):
         return None
     return Surface(points, triangles - 1, polygons)
 
 
-def _points(lines: list[bytes]) -> Array | None:
+def _lines_of(data: bytes) -> dict[bytes, bytes] | None:
+    """The lines of points, and those of faces, as one text each; None where there are lines of rare kinds.
+
+    Nearly all lines stand in few runs of one kind: runs are found and copied, not lines, which is three times as fast.
+    """
+    text = np.frombuffer(data + b"\n\n", np.uint8)
+    starts = np.concatenate(([0], np.flatnonzero(text[: len(data)] == _NEWLINE) + 1))
+    kinds = text[starts] * np.uint16(256) + text[starts + 1]
+    firsts = np.concatenate(([0], np.flatnonzero(np.diff(kinds)) + 1))
+    found: dict[bytes, list[bytes]] = defaultdict(list)
+    begins = starts[firsts].tolist()
+    for begin, end in pairwise([*begins, len(data)]):
+        kind = data[begin : begin + 2].partition(b"\n")[0]
+        if kind in _WANTED:
+            found[kind].append(data[begin:end])
+        elif kind not in _BEGINNINGS:
+            return None
+    return {kind: b"".join(runs) for kind, runs in found.items()}
+
+
+def _points(text: bytes) -> Array | None:
     """The first three numbers of each line; None where lines have different lengths or too few numbers."""
-    numbers = _numbers(b"\n".join(lines).replace(_POINT, b""), np.float64)
-    width = 0 if numbers is None else len(numbers) // len(lines)
-    if numbers is None or width < 3 or len(numbers) != width * len(lines) or not np.isfinite(numbers).all():
+    count = text.rstrip(b"\n").count(b"\n") + 1
+    numbers = _separated(text)
+    width = 0 if numbers is None else len(numbers) // count
+    if numbers is None or width < 3 or len(numbers) != width * count or not np.isfinite(numbers).all():
         return None
     return np.ascontiguousarray(numbers.reshape(-1, width)[:, :3])
 
 
-def _triangles(lines: list[bytes]) -> tuple[Index | None, bool]:
+def _separated(text: bytes) -> Any:
+    """The numbers of points; None as :func:`_numbers`. Where one blank separates them they are read as JSON, in half the time of numpy."""
+    try:
+        listed = text.rstrip(b"\n").removeprefix(_POINT).replace(b"\n" + _POINT, b",").replace(b" ", b",")
+        return np.array(json.decode(b"[%b]" % listed, type=list[float]))
+    except DecodeError:
+        return _numbers(text.replace(_POINT, b""), np.float64)
+
+
+def _triangles(text: bytes) -> tuple[Index | None, bool]:
     """The corners (n, 3) of faces, counted from 1, and whether there are faces with more than three; None for broken ones."""
-    text = b"\n".join(lines).replace(_FACE, b"")
+    lines = text.rstrip(b"\n").split(b"\n")
+    text = text.replace(_FACE, b"")
     numbers = _numbers(_OTHER_INDICES.sub(b"", text) if b"/" in text else text, np.intp)
     if numbers is None or len(numbers) == 3 * len(lines):
         return (None if numbers is None else numbers.reshape(-1, 3)), False

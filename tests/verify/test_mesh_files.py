@@ -47,6 +47,23 @@ def test_files_with_rare_or_broken_lines_are_left_to_trimesh(text: bytes) -> Non
     assert read_obj(text) is None
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "v 0 0 0\nv 1 .5 0\nv 0 1. +2\nf 1 2 3\n",
+        "v  0 0 0\nv 1 0.5\t0 \nv 0 1e0 2\nf  1 2  3 \n",
+        "v 0 0 0\nvn 0 0 1\nv 1 0.5 0\nvn 0 0 1\nv 0 1 2\n\nf 1 2 3",
+        "#\nv 0 0 0\nv 1 0.5 0\nf 1 2 3\ng other\nv 0 1 2\n",
+        "v 0 0 0 1 1 1\r\nv 1 0.5 0 1 1 1\r\nv 0 1 2 1 1 1\r\nf 1/1 2/2 3/3\r\n",
+    ],
+)
+def test_numbers_and_lines_may_be_written_in_several_ways(text: str) -> None:
+    found = read_obj(text.encode())
+    assert found is not None
+    assert found.vertices.tolist() == [[0.0, 0.0, 0.0], [1.0, 0.5, 0.0], [0.0, 1.0, 2.0]]
+    assert found.faces.tolist() == [[0, 1, 2]]
+
+
 COORDINATE = st.floats(-10, 10, width=32)
 
 
