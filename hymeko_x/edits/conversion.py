@@ -29,7 +29,7 @@ from hymeko_x.residue.realign import with_new_names, with_old_names
 from hymeko_x.source import PackageFiles
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Set
+    from collections.abc import Container, Iterable, Iterator, Set
 
     from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
@@ -141,12 +141,13 @@ class Conversion:
         ]
         return Left({*names.given, *names.given.values()}, words[False], words[True], [str(edit) for edit in rest if _is_telling(edit)])
 
-    def unmet(self) -> Iterator[tuple[Id, str]]:
+    def unmet(self, known: Container[str]) -> Iterator[tuple[Id, str]]:
         """What EDITED has and ORIGINAL, as it was converted last, does not have: by the element of ORIGINAL, in words.
 
         Both files are compared name by name, so that no way to see two robots as the same one hides an edit; only shapes without names,
         which may have another number, are found by what they are. It counts what EDITED was edited to have, and every other value of a
-        shape that was not edited. Names that did not arrive, and what has several forms of one meaning, are reported by :meth:`left`.
+        shape that was not edited. Names that did not arrive, and what has several forms of one meaning, are reported by :meth:`left`,
+        whose edits are ``known``.
         """
         assert self._used is not None
         image = self._used.image
@@ -161,7 +162,7 @@ class Conversion:
             if _aim(edit) in (self._asked or ()) and not _has_other_forms(edit) and not is_there:
                 yield self._homes.get(edit.element, edit.element), f"the edit did not arrive: {edit}"
         for edit in rest:
-            if edit.element not in touched and _is_value_of_shape(edit):
+            if edit.element not in touched and _is_value_of_shape(edit) and str(edit) not in known:
                 words = f"it changed with the edits: {edit.element} {edit.field} is {edit.before}, and {edit.after} in the edited file"
                 yield self._homes.get(edit.element, edit.element), words
 

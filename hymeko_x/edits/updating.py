@@ -155,8 +155,9 @@ def _report_left(found: _Round, conversion: Conversion, original: Source, format
     if found.texts.missing:
         return
     known = {edit.element for edit in lost}
-    unmet = [words for element, words in conversion.unmet() if element not in known] if is_changed else [*conversion.lost_colours()]
-    missing = [f"the edit did not arrive: {words}" for words in (*found.left.names, *(() if lost else found.left.edits))]
+    left = [] if lost else found.left.edits
+    unmet = [words for element, words in conversion.unmet(left) if element not in known] if is_changed else [*conversion.lost_colours()]
+    missing = [f"the edit did not arrive: {words}" for words in (*found.left.names, *left)]
     _report_missing([*dict.fromkeys([*missing, *unmet])], original, report)
     for name in dict.fromkeys([*found.left.made_names, *(conversion.lost_names() if is_changed else ())]):
         hint = f"{format.name} has no name for it there"

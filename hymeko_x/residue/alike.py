@@ -18,7 +18,7 @@ from hymeko_x.ir.values import IDENTITY, are_numbers
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable
 
-    from hymeko_x.ir.mechanism import Extra, RobotArc
+    from hymeko_x.ir.mechanism import Extra, RobotArc, RobotEdge
 
 _UPWARD = re.compile(r"^(?:\.\.?/)+")
 _FEWEST_DIGITS = 6
@@ -67,7 +67,14 @@ def _without_lost_colour(now: Edge, then: Edge) -> Edge:  # type: ignore[type-ar
         return then
     if now.data.rgba is not None or any(arc.role == "material" for arc in now.arcs):
         return then
-    return Edge(replace(then.data, rgba=None), tuple([arc for arc in then.arcs if arc.role != "material"]))
+    return without_colour(then)
+
+
+def without_colour(edge: RobotEdge) -> RobotEdge:
+    """A shape without its colour and its material; any other edge as it is."""
+    if not isinstance(edge.data, Shape):
+        return edge
+    return Edge(replace(edge.data, rgba=None), tuple([arc for arc in edge.arcs if arc.role != "material"]))
 
 
 def _is_alike_arc(now: RobotArc, then: RobotArc) -> bool:

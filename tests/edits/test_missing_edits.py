@@ -182,3 +182,16 @@ def test_a_collision_that_becomes_a_geom_of_its_own_and_the_first_one_arrives(tm
     assert [row.message for row in report if row.code.id == "HX118"] == []
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "r.xml"))
     assert sorted(float(size) for size in model.geom_size[:, 0]) == [0.1, 0.2, 0.3]
+
+
+@pytest.mark.unread("HX101", "HX102", "HX104", "HX105")
+def test_a_painted_visual_of_a_geom_that_is_both_paints_it_with_one_warning_and_leaves_its_mass_alone(tmp_path: Path) -> None:
+    text = TWO.replace('size="0.1"', 'size="0.1" rgba="1 0 0 1"')
+    (tmp_path / "r.xml").write_text(text)
+    hx.convert(tmp_path / "r.xml", tmp_path / "r.urdf")
+    (tmp_path / "r.urdf").write_text((tmp_path / "r.urdf").read_text().replace("1 0 0 1", "0 1 0 1", 1))
+    report = hx.update(tmp_path / "r.xml", tmp_path / "r.urdf").report
+    assert [row.message for row in report if row.code.id == "HX118"] == [
+        "the edit did not arrive: shape 'a/collision' rgba: [0 1 0 1] -> [1 0 0 1]"
+    ]
+    assert (tmp_path / "r.xml").read_text() == text.replace("1 0 0 1", "0 1 0 1")
