@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from msgspec.structs import replace
 
 from hymeko_x import codes, disk, formats, pipeline, targets
-from hymeko_x.compare.diff import diff
+from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import relevant
 from hymeko_x.diagnostics import Report
@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 _BASES = ("fixed", "free")
 _ACTUATORS = ("none", "motor", "position", "velocity")
 _ASSETS = ("copy", "reference")
+_SINGLE = Tolerance(1e-9, 1e-6)
+"""By how much a number that a program wrote in single precision differs at most, in its unit and as a part of it: no edit is so small."""
 _PLACING = frozenset({"drive", "mount", "sense"})
 """The kinds of edges that are called as what they place."""
 _LIKE_LINKS = frozenset({"joint", "frame", "loop"})
@@ -132,7 +134,7 @@ class Conversion:
         names = self._renames(self._used.image)
         edited = self._under(names, self.edited, self._used.image)
         image = align(self._used.image, edited)[1]
-        rest = relevant(diff(image, edited, TOLERANCE), image, edited, TOLERANCE)
+        rest = relevant(diff(image, edited, _SINGLE), image, edited, _SINGLE)
         words: dict[bool, list[str]] = {True: [], False: []}
         for new, old in names.given.items():
             words[self._is_made(new, old)].append(f"{old.kind} '{old.name}' is called '{new.name}'")
@@ -155,9 +157,9 @@ class Conversion:
         edited = self._under(names, self.edited, image) if names.every else self.edited
         touched = {element for element, _, _ in self._asked or ()}
         numbered = reordered_shapes(edited, image)
-        rest = diff(image, rename(edited, numbered), TOLERANCE)
+        rest = diff(image, rename(edited, numbered), _SINGLE)
         left = frozenset(map(_aim, rest))
-        for edit in diff(image, edited, TOLERANCE):
+        for edit in diff(image, edited, _SINGLE):
             is_there = edit.element.kind == "shape" and (numbered.get(edit.element, edit.element), *_aim(edit)[1:]) not in left
             if _aim(edit) in (self._asked or ()) and not _has_other_forms(edit) and not is_there:
                 yield self._homes.get(edit.element, edit.element), f"the edit did not arrive: {edit}"
@@ -227,8 +229,8 @@ class Conversion:
         return self._in_image(unnamed_bodies(self.mechanism))
 
     def _bare_bodies(self) -> set[Id]:
-        """The ids in the image of the bodies of ORIGINAL that have no inertial."""
-        return self._in_image(key for key, body in self.mechanism.vertices(Body) if body.inertial is None)
+        """The ids in the image of the bodies of ORIGINAL that have no mass."""
+        return self._in_image(key for key, body in self.mechanism.vertices(Body) if body.inertial is None or not body.inertial.mass)
 
     def _in_image(self, homes: Iterable[Id]) -> set[Id]:
         there = {home: key for key, home in self._homes.items()}

@@ -25,7 +25,7 @@ _SINGLE = 1e-5
 def without_followed(edited: Mechanism, image: Mechanism, bare: Iterable[Id]) -> Mechanism:
     """The edited robot, in which those of the bare bodies have the inertial of the image whose inertial is that of their shapes.
 
-    It is so in both files with one density. ``bare`` are bodies of the image for which ORIGINAL has no inertial.
+    It is so in both files with one density. ``bare`` are bodies of the image for which ORIGINAL has no mass.
     """
     theirs, mine = (Solids(robot, Context(Report()), as_hull=True) for robot in (image, edited))
     followed: dict[Id, Body] = {}
@@ -47,13 +47,13 @@ def _solid(solids: Solids, body: Id) -> Solid | None:
 
 
 def _density(inertial: Inertial | None, solid: Solid | None) -> float | None:
-    """The density in kg/m^3 with which a solid has this inertial; None where it has another one."""
+    """The density in kg/m^3 with which a solid has this inertial, whose tensor may be stated as zeros; None where it has another one."""
     if inertial is None or inertial.mass is None or inertial.tensor is None or solid is None:
         return None
     density = inertial.mass / solid.mass
     expected = solid.times(density)
-    is_it = _are_near(inertial.com, expected.com) and _are_near(inertial.tensor, expected.tensor)
-    return density if is_it else None
+    is_tensor = not any(inertial.tensor) or _are_near(inertial.tensor, expected.tensor)
+    return density if is_tensor and _are_near(inertial.com, expected.com) else None
 
 
 def _are_near(numbers: tuple[float, ...], others: tuple[float, ...]) -> bool:

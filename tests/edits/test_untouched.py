@@ -36,10 +36,10 @@ LAMP = """<robot name="lamp">
 """
 
 
-def updated(there: Path, change: tuple[str, str]) -> tuple[str, list[str]]:
+def updated(there: Path, change: tuple[str, str], lamp: str = LAMP) -> tuple[str, list[str]]:
     """The lamp's text after a change in another format, and the warnings."""
     original = there.with_name("lamp.urdf")
-    original.write_text(LAMP)
+    original.write_text(lamp)
     hx.convert(original, there)
     text, number = re.subn(*change, there.read_text(), count=1)
     assert number == 1
@@ -83,6 +83,18 @@ def test_a_link_without_inertial_has_none_when_its_shape_is_resized(tmp_path: Pa
     text, missing = updated(tmp_path / "lamp.usda", (r'(?s)(Cube "collision".*?xformOp:scale = )\(0.1, 0.1, 0.02\)', r"\1(0.2, 0.1, 0.02)"))
     assert missing == []
     assert text == "0.2 0.1 0.02".join(LAMP.rsplit("0.1 0.1 0.02", 1))
+
+
+MASSLESS = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
+
+
+@pytest.mark.unread("HX101", "HX105", "HX110", "HX201", "HX204")
+def test_a_link_of_mass_zero_has_none_when_its_shape_is_moved(tmp_path: Path) -> None:
+    lamp = LAMP.replace('<link name="foot">', f'<link name="foot">{MASSLESS}')
+    change = (r'(?s)(Cube "collision".*?xformOp:translate = )\(0, 0, 0\)', r"\1(0, 0, 0.5)")
+    text, missing = updated(tmp_path / "lamp.usda", change, lamp)
+    assert missing == []
+    assert text == lamp.replace("<collision>\n", f"<collision>\n      {ORIGIN}\n")
 
 
 @pytest.mark.unread("HX101", "HX105", "HX201", "HX204")
