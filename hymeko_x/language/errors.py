@@ -30,6 +30,7 @@ _CLOSERS = {"RBRACE": "{", "RSQB": "[", "RPAR": "("}
 _INDENT = re.compile(r"[ \t]*")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _DIGIT_NAME = re.compile(r"\d+[^\W\d]\w*")
+_WITH_NEIGHBOURS = re.compile(r"(?=[\d.+-])[+-]?(?:\d|\.\d)[\w.%°/*·^+-]*")
 _GLUED = re.compile(r"(use|as|using|import)(?=\w)")
 _WHOLE_WORD = re.compile(r"const\b[^;{}\n]*;|[\w.]+|\S")
 _NAME_AND_PATH = re.compile(r"(?<![\w:.`])(?<![:@] )([^\W\d]\w*)\s+([^\W\d]\w*(?:\.(?:[^\W\d]\w*|`[^`\n]*`))+)\s*\Z")
@@ -89,14 +90,26 @@ def _unexpected_character(error: UnexpectedCharacters, text: str, name: str) -> 
     offset = error.pos_in_stream or 0
     character = text[offset]
     message = f"the character {character!r} means nothing here; expected {_list(_possible(error.allowed or set(), text, offset))}"
-    hint = _unclosed_before(text, offset) or _character_hint(text, offset)
+    hint = _unclosed_before(text, offset) or _glued_hint(text, offset) or _character_hint(text, offset)
     place = Origin(name, error.line, error.column)
     return refuse(codes.SYNTAX, message, place, hint=hint, excerpt=excerpt(text, error.line, error.column, 1))
+
+
+def _glued_hint(text: str, offset: int) -> str:
+    """A hint for a number or a string that touches its neighbour."""
+    number = _WITH_NEIGHBOURS.match(text, offset)
+    if number is not None:
+        return f"a number stands apart from what is beside it: '{number[0]}' is no number and no quantity"
+    if text[offset] in "\"'" and text[offset - 1 : offset] in ('"', "'"):
+        return "a blank or a comma stands between two strings"
+    return ""
 
 
 def _character_hint(text: str, offset: int) -> str:
     if text.startswith("/*", offset):
         return "the comment that begins here is never closed"
+    if text.startswith("const", offset):
+        return "a constant is written: const NAME = value;"
     return _CHARACTER_HINTS.get(text[offset], "")
 
 
@@ -127,6 +140,8 @@ def _token_hint(error: UnexpectedToken, text: str, at_end: bool) -> str:
     if at_end and unclosed is not None:
         bracket, line = _unclosed_by_layout(text) or unclosed
         return f"the '{bracket}' in line {line} is never closed"
+    if error.token.type == "CONSTANT":
+        return "a constant stands between items"
     if error.token.type in _KEYWORDS and token.isidentifier():
         return f"'{token}' is a word of the language; as a name it is written in backticks: `{token}`"
     if token in _PAIRS and unclosed is not None:
@@ -192,6 +207,8 @@ def _expectation_hint(expected: set[str], token: str, before: str) -> str:
     if "LBRACE" in expected and "EQUAL" not in expected:
         return "a node or edge has a block, even if it is empty: name : type { }"
     if expected <= {"NAME", "QUOTED_REF", "LESSTHAN"} and before in ("+", "-", "~", ">"):
+        if _NUMBER.fullmatch(token):
+            return "a blank stands between a name and a number with a sign"
         return "a direction is followed by the name of an element"
     return _BEHIND.get(before, "")
 
@@ -239,6 +256,8 @@ def _with_line(stack: list[tuple[str, int]], text: str) -> tuple[str, int] | Non
 def _possible(terminals: set[str], text: str, offset: int) -> set[str]:
     """The terminals without the brackets that would close another one than the innermost open one."""
     unclosed, _ = _brackets(text[:offset])
+    if unclosed is not None:
+        terminals = terminals - {"IMPORT"}  # imports stand at the beginning
     if "EDGE_WORD" in terminals and "COLON" not in terminals:
         terminals = terminals - {"LPAR"}  # a group of arcs, as other tools write it
     if terminals <= {"NAME", "QUOTED_REF", "LESSTHAN"}:

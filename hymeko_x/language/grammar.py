@@ -70,8 +70,9 @@ def _token_pattern() -> re.Pattern[str]:
     tables = json.loads(files("hymeko_x.language").joinpath("tables.json").read_text(encoding="utf-8"))
     comment, space = tables["ignored"]
     left_out = {*tables["opening"], *tables["statements"]}
+    words = rf"\b(?:{'|'.join(tables['keywords'])})\b"
     terminals = "|".join(f"(?:{pattern})" for name, pattern in tables["terminals"] if name not in left_out)
-    return re.compile(f"(?P<space>{space})|(?P<comment>{comment})|(?P<token>{terminals}|.)", re.DOTALL)
+    return re.compile(f"(?P<space>{space})|(?P<comment>{comment})|(?P<token>{words}|{terminals}|.)", re.DOTALL)
 
 
 def _rule_order(rule: dict[str, Any]) -> tuple[str, int]:

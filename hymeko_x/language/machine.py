@@ -58,7 +58,17 @@ Gap = tuple[int, int, int]
 """White space and comments between two tokens: offset, end, and the number of brackets around it."""
 Convert = Callable[[str, int], Any]
 Reduce = Callable[[list[Any], int], Any]
-_State = dict[str, Any]
+
+
+class _State(dict[str, Any]):
+    """The actions of a state, by terminal and by rule. States lead to each other, so that their whole text would not end."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return f"<state of {len(self)} actions>"
+
+
 _ENTRY = 3  # places on the stack for one symbol
 
 
@@ -85,7 +95,7 @@ class Machine:
             _Reduction(_ENTRY * len(rule["symbols"]), rule["origin"], number, _picker(tuple(rule["symbols"])))
             for number, rule in enumerate(tables["rules"])
         ]
-        states: list[_State] = [{} for _ in tables["states"]]
+        states = [_State() for _ in tables["states"]]
         for state, row in zip(states, tables["states"], strict=True):
             state.update({kind: states[action] if action >= 0 else reductions[-1 - action] for kind, action in row.items()})
         handing_on = {item for item in reductions if item.size == _ENTRY and item.pick is None and not item.origin.startswith("_")}
@@ -207,11 +217,11 @@ class Machine:
             position = match.end()
 
     def _kind(self, kind: str, word: str, state: _State, start: int) -> str:
-        """A keyword is one only where the grammar has room for it, and a name elsewhere."""
+        """The terminal of a keyword. The words of the old notation (``rel``) are names where no edge may stand."""
         keyword = self._keywords.get(word)
         if keyword is not None and keyword in state:
             return keyword
-        if kind != "NUMBER" and word.isidentifier() and "NAME" in state:  # the numbers inf and nan are never names
+        if kind not in ("NUMBER", "KEYWORD") and word.isidentifier() and "NAME" in state:
             return "NAME"
         raise ParseError(start)
 
@@ -235,7 +245,7 @@ def _skip_handing_on(states: list[_State], handing_on: set[_Reduction]) -> None:
             only[id(state)] = actions[0].origin
     for state in states:
         for kind, target in state.items():
-            while type(target) is dict and id(target) in only:
+            while type(target) is _State and id(target) in only:
                 target = state[only[id(target)]]
             state[kind] = target
 
@@ -254,7 +264,7 @@ def _grow_in_place(states: list[_State]) -> None:
     for origin in set(only.values()):
         for sequence in {id(s[origin]): s[origin] for s in states if origin in s}.values():
             for kind, target in sequence.items():
-                if type(target) is dict and only.get(id(target)) == origin:
+                if type(target) is _State and only.get(id(target)) == origin:
                     sequence[kind] = _GROW
 
 
@@ -274,7 +284,7 @@ def _begin_in_place(states: list[_State]) -> None:
             only[id(state)] = first.origin
     for state in states:
         for kind, target in state.items():
-            if type(target) is dict and id(target) in only:
+            if type(target) is _State and id(target) in only:
                 state[kind] = _Begin(state[only[id(target)]])
 
 

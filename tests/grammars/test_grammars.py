@@ -115,39 +115,41 @@ def mutated(seed: int) -> str:
     return text[:start] + chance.choice(PIECES) + text[start + chance.choice((0, 0, 1, 1, 2)) :]
 
 
-def judged(name: str, seeds: range) -> Counter[str]:
-    """How mutated texts are judged. What the grammar takes, the parser takes."""
-    found: Counter[str] = Counter()
-    for seed in seeds:
-        text = mutated(seed)
-        by_grammar, by_parser = accepts(name, text), is_parsed(text)
-        assert by_parser or not by_grammar, (seed, text)
-        found["alike" if by_grammar == by_parser else "narrower"] += 1
-        found["taken"] += by_grammar
-    return found
+def judged_otherwise(name: str, seeds: range) -> list[tuple[int, str]]:
+    """The mutated texts that the grammar and the parser judge differently."""
+    return [(seed, text) for seed in seeds if accepts(name, text := mutated(seed)) != is_parsed(text)]
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_mutated_texts_are_judged_alike(name: str) -> None:
-    found = judged(name, range(40))
-    assert found["taken"] > 5
-    assert found["alike"] >= 32, found
+    assert judged_otherwise(name, range(40)) == []
+    assert 5 < sum(accepts(name, mutated(seed)) for seed in range(40)) < 35
 
 
 @pytest.mark.full
 @pytest.mark.parametrize("name", NAMES)
 def test_ten_thousand_mutated_texts_are_judged_alike(name: str) -> None:
-    assert judged(name, range(10_000))["alike"] > 8_500
+    assert judged_otherwise(name, range(10_000)) == []
 
 
-@pytest.mark.parametrize("text", ["r{a -inf1}", "r{a=-info.b}", "r{a +infinite{}}", "r{a -import1}", "r{- a.inf1}", "r{[-inf 1] -inf2}"])
-def test_a_name_that_begins_like_infinity_stands_behind_a_blank(text: str) -> None:
-    """A program with a lexer reads the number first; without a blank no grammar takes it, with one they all do."""
-    assert [name for name in NAMES if accepts(name, text)] == (["llguidance", "gbnf"] if "a.inf" in text else [])
-    spaced = re.sub(r"([-+])(?=inf\w|im)", r"\1 ", text)
-    assert [name for name in NAMES if accepts(name, spaced)] == ["llguidance", "gbnf"]
+GOOD = """r{a -inf1} r{a=-info.b} r{a~infinite{}} r{a -import1} r{-a.inf1} r{[-inf 1]-inf2} r{a//x
+.b{}} r{a/**/-b} r{x[.5,1.,-.5e3,]} r{x/**/2mm//y
+} r{x#y
+1e3rad-2} r{x[-a,+b]} r{"a"b{}} r{x<?>y"a"} r{m${a}n 1}"""
+BAD = """r{a-1} r{a.5} r{x|2mm.5} r{x|1-a} r{x|2mm-|a} r{x|1->a} r{[0|0inf.3]} r{x|"a""b"} r{[,1]} r{[1,,2]} r{[a,,b]} use{} r{a-use}
+r{as|1} r{import|1} r{x|1inf.3} r{x|inf-a} r{x|2e5e6}"""
+
+
+@pytest.mark.parametrize("text", re.findall(r"r\{(?:[^{}]|\{[^{}]*\})*\}", GOOD))
+def test_words_stand_side_by_side_where_no_blank_is_needed(text: str) -> None:
     assert is_parsed(text)
-    assert is_parsed(spaced)
+    assert [name for name in NAMES if accepts(name, text)] == ["llguidance", "gbnf"]
+
+
+@pytest.mark.parametrize("text", [text.replace("|", " ") for text in BAD.split()])
+def test_numbers_touch_no_word_and_words_of_the_language_are_no_names(text: str) -> None:
+    assert not is_parsed(text)
+    assert [name for name in NAMES if accepts(name, text)] == []
 
 
 # ---- the notations -----------------------------------------------------------------------------------------------------------------
@@ -172,13 +174,13 @@ def test_no_terminal_needs_what_the_programs_do_not_have() -> None:
 def test_every_terminal_with_priority_or_look_around_has_a_plain_form() -> None:
     defined = re.findall(r"^([A-Z_]+)(\.\d)?: (.*)$", grammar_text(), re.MULTILINE)
     odd = {name for name, priority, text in defined if name != "COMMENT" and (priority or re.search(r"\(\?[=!]|\\[wd]", text))}
-    assert odd - {*PLAIN} - DROPPED <= {"MODIFIER", "QUERY"}  # fixed texts
+    assert odd - {*PLAIN, "NUMBER", "QUANTITY"} - DROPPED <= {"MODIFIER", "QUERY"}  # parts of their own, and fixed texts
 
 
 def test_no_rule_begins_with_itself() -> None:
     """llama.cpp takes no left recursion."""
     rules = plain_rules()[0]
-    empty = {"GAP", "FIRST-GAP"} | {name for name, choices in rules.items() if () in choices}
+    empty = {"GAP"} | {name for name, choices in rules.items() if () in choices}
     first = {name: {symbol for choice in choices for symbol in heads(choice, empty)} & {*rules} for name, choices in rules.items()}
     for _ in rules:
         first = {name: found | {other for one in found for other in first[one]} for name, found in first.items()}

@@ -86,7 +86,7 @@ def test_a_file_that_is_imported_twice_is_read_once() -> None:
 
 def test_a_syntax_error_in_an_imported_file_is_shown_there() -> None:
     assert refused('import "legs.hymeko"\nr : robot {}', {"legs.hymeko": "leg() {\n  hip {"}).split("\n") == [
-        "legs.hymeko:2:8: error[HX060]: the text ends; expected a name, a value, a direction (+ - ~ -> <- <>), '}', '@' or 'import'",
+        "legs.hymeko:2:8: error[HX060]: the text ends; expected a name, a value, a direction (+ - ~ -> <- <>), '}' or '@'",
         "    2 |   hip {",
         "      |        ^",
         "  hint: the '{' in line 2 is never closed",

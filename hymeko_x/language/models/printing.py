@@ -8,8 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.language.grammar import grammar_text
-from hymeko_x.language.models.rules import BLANKS, FIRST_GAP, GAP, START, plain_rules
-from hymeko_x.language.models.terminals import BEGINNING
+from hymeko_x.language.models.rules import BLANKS, GAP, START, plain_rules
 from hymeko_x.language.models.terminals import BLANKS as BLANKS_PATTERN
 
 if TYPE_CHECKING:
@@ -28,10 +27,9 @@ def lark() -> str:
 def llguidance() -> str:
     """For llguidance, and the programs that use it (vLLM, SGLang, llama.cpp): its variant of lark's notation."""
     rules, terminals = plain_rules()
-    optional = {GAP: f"{BLANKS}?", FIRST_GAP: "BEGINNING?"}
 
     def symbol(name: str) -> str:
-        return optional.get(name) or name.replace("-", "_")
+        return f"{BLANKS}?" if name == GAP else name.replace("-", "_")
 
     lines = [f"// {_TITLE}", "%llguidance {}", "", *_rule_lines(rules, symbol, ": ", "\n    | "), ""]
     lines += (f"{symbol(name)}: /{_slashes(pattern)}/" for name, pattern in _all_terminals(terminals).items())
@@ -41,10 +39,9 @@ def llguidance() -> str:
 def gbnf() -> str:
     """For llama.cpp, and for xgrammar, which takes the same notation."""
     rules, terminals = plain_rules()
-    names = {START: "root", GAP: "gap", FIRST_GAP: "beginning?"}
 
     def symbol(name: str) -> str:
-        return names.get(name) or name.lower().replace("_", "-")
+        return "root" if name == START else name.lower().replace("_", "-")
 
     lines = [f"# {_TITLE}", *_rule_lines(rules, symbol, " ::= ", " |\n  "), "gap ::= blanks?"]
     lines += (f"{symbol(name)} ::= {_gbnf(patterns.parse(pattern))}" for name, pattern in _all_terminals(terminals).items())
@@ -62,7 +59,7 @@ def _rule_lines(rules: Rules, symbol: Callable[[str], str], defined_as: str, oth
 
 
 def _all_terminals(terminals: dict[str, str]) -> dict[str, str]:
-    return {**terminals, BLANKS: BLANKS_PATTERN, "BEGINNING": BEGINNING}
+    return {**terminals, BLANKS: BLANKS_PATTERN}
 
 
 def _slashes(pattern: str) -> str:

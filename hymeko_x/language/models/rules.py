@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from enum import Enum
 from itertools import product
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from hymeko_x.language.grammar import grammar_text
-from hymeko_x.language.models.terminals import DROPPED, NAME_AT_SIGN, PLAIN
+from hymeko_x.language.models.terminals import DROPPED, PLAIN, WITHIN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,25 +21,43 @@ Rules = dict[str, list[tuple[str, ...]]]
 """By name the alternatives of a rule; names of terminals are in capitals."""
 
 START = "start"
-AT_SIGN = "NAME-AT-SIGN"
-"""A name right behind a direction."""
-BLANKS, GAP, FIRST_GAP = "BLANKS", "GAP", "FIRST-GAP"
-"""A blank that must stand, one that may, and what may stand before the first word."""
+BLANKS, GAP = "BLANKS", "GAP"
+"""Blanks or comments that must stand, and that may."""
 
 
 class Before(Enum):
-    """A word, behind which another word needs a blank; a sign; a direction; or a sign to which the next word is joined."""
+    """What stands before a word: a name, a number, a string, or a sign, behind which nothing needs a blank."""
 
-    WORD = "w"
+    NAME = "n"
+    NUMBER = "v"
+    STRING = "t"
     SIGN = "s"
-    DIRECTION = "d"
-    JOINED = "j"
 
 
-_IN_LISTS = "entry"
-"""A value in a list: no relation, because `[-E]` begins like a number."""
-_SIGNS = frozenset("{}()[],:=<>")
-_JOINS = frozenset({"."})
+_SIGNS = frozenset("{}()[],:=<>.")
+_NEEDS_A_BLANK = MappingProxyType(
+    {
+        "NAME": {Before.NAME, Before.NUMBER},
+        "NUMBER": {Before.NAME, Before.NUMBER},
+        "QUANTITY": {Before.NAME, Before.NUMBER},
+        "STRING": {Before.STRING},
+        "DIRECTION": {Before.NUMBER},
+        "MODIFIER": {Before.NUMBER},
+    }
+)
+"""Before which words a terminal needs a blank; keywords are as names."""
+_ENDS = MappingProxyType({"NUMBER": Before.NUMBER, "QUANTITY": Before.NUMBER, "STRING": Before.STRING})
+_ENDS_IN_A_SIGN = frozenset({"DIRECTION", "MODIFIER", "EDGE_WORD", "EXPRESSION", "QUERY"})
+_WAYS = MappingProxyType(
+    {
+        "NUMBER": (("UNSIGNED",), ("PLUS-MINUS", "UNSIGNED")),
+        "QUANTITY": (("WITH-UNIT", "unit-rest"), ("PLUS-MINUS", "WITH-UNIT", "unit-rest")),
+        "DIRECTION": (("PLUS-MINUS",), ("ARROW",)),
+    }
+)
+"""Terminals as sequences of parts without a blank between: a sign is a part of its own, for programs with a lexer do not go back to it."""
+_UNIT_REST = [("TIMES", "UNIT", "unit-rest"), ("MINUS", "UNIT", "unit-rest"), ("POWER", "unit-rest"), ()]
+"""The rule of what follows the first unit: ``2N*m/rad``."""
 
 
 def plain_rules() -> tuple[Rules, dict[str, str]]:
@@ -47,7 +66,7 @@ def plain_rules() -> tuple[Rules, dict[str, str]]:
     rules = _useful(_without_left_recursion(_useful(rules)), START)
     spaced = _useful(_renamed(_spaced(rules, patterns)), START)
     used = {symbol for choices in spaced.values() for choice in choices for symbol in choice}
-    return spaced, {name: pattern for name, pattern in (patterns | {AT_SIGN: NAME_AT_SIGN}).items() if name in used}
+    return spaced, {name: pattern for name, pattern in {**patterns, **WITHIN}.items() if name in used}
 
 
 def _lark_rules() -> tuple[Rules, dict[str, str]]:
@@ -63,12 +82,9 @@ def _lark_rules() -> tuple[Rules, dict[str, str]]:
     rules: Rules = {}
     for rule in lark.rules:
         symbols = tuple(symbol.name if symbol.is_term else _named(symbol.name) for symbol in rule.expansion)
-        if _named(rule.origin.name).startswith("vector"):
-            symbols = tuple(_IN_LISTS if symbol == "value" else symbol for symbol in symbols)
         if DROPPED.isdisjoint(symbols):
             rules.setdefault(_named(rule.origin.name), []).append(symbols)
     rules[START] = [choice for choice in rules[START] if choice]
-    rules[_IN_LISTS] = [("literal",), ("ref",)]
     return rules, patterns
 
 
@@ -121,7 +137,7 @@ def _groups(rules: Rules) -> list[list[str]]:
 
 def _spaced(rules: Rules, patterns: dict[str, str]) -> Rules:
     """The rules in variants ``name-b-e``: b is what stands before, e what it ends with."""
-    spaced: Rules = {START: [(FIRST_GAP, f"{START}-s-{end.value}", GAP) for end in Before]}
+    spaced: Rules = {START: [(GAP, f"{START}-s-{end.value}", GAP) for end in Before], "unit-rest": _UNIT_REST}
     for name, choices in rules.items():
         for before in Before:
             for choice in choices:
@@ -142,21 +158,12 @@ def _ways(choice: tuple[str, ...], before: Before, rules: Rules, patterns: dict[
 
 
 def _after(symbol: str, pattern: str, now: Before) -> Iterator[tuple[Before, tuple[str, ...]]]:
-    """Behind what stands there a terminal, with the blank that must or may stand between: each way, none where it cannot stand."""
-    text = pattern.replace("\\", "")
-    if text in _JOINS:
-        if now is Before.WORD:
-            yield Before.JOINED, (symbol,)
-    elif now is Before.JOINED:
-        if symbol == "NAME":
-            yield Before.WORD, (symbol,)
-    elif text in _SIGNS:
-        yield Before.SIGN, (GAP, symbol)
-    elif now is Before.DIRECTION and symbol == "NAME":
-        yield from ((Before.WORD, (BLANKS, symbol)), (Before.WORD, (AT_SIGN,)))
-    else:
-        end = {"DIRECTION": Before.DIRECTION, "EDGE_WORD": Before.SIGN}.get(symbol, Before.WORD)
-        yield end, (BLANKS if now is Before.WORD else GAP, symbol)
+    """Behind what stands there a terminal, with the blank that must or may stand between: each way."""
+    is_sign = pattern.replace("\\", "") in _SIGNS or symbol in _ENDS_IN_A_SIGN
+    needs = _NEEDS_A_BLANK.get(symbol, set() if is_sign else _NEEDS_A_BLANK["NAME"])
+    end = Before.SIGN if is_sign else _ENDS.get(symbol, Before.NAME)
+    for parts in _WAYS.get(symbol, ((symbol,),)):
+        yield end, (BLANKS if now in needs else GAP, *parts)
 
 
 # ---- order -------------------------------------------------------------------------------------------------------------------

@@ -18,11 +18,8 @@ _OTHER_LETTERS = "À-ÖØ-öø-ʯΑ-ΡΣ-ώА-ҁぁ-ゖァ-ヺ一-鿯가-힣"
 """Letters beyond ASCII that names may have without quotes: Latin, Greek, Cyrillic, kana, CJK, Hangul. In backticks any letter may stand."""
 
 
-_ANY = "*"
-
-
 def words_except(words: Iterable[str]) -> str:
-    """The pattern of names that are none of these words of small ASCII letters; ``i*`` is every name that begins with ``i``."""
+    """The pattern of names that are none of these words of small ASCII letters."""
     return _except(frozenset(words), _FIRST)
 
 
@@ -33,8 +30,6 @@ def _except(words: frozenset[str], letters: str) -> str:
     found = [f"[{_without(letters, heads)}{_OTHER_LETTERS}]{tail}"]
     for head in heads:
         rests = frozenset(word[1:] for word in words if word.startswith(head))
-        if _ANY in rests:
-            continue
         inner = _except(rests - {""}, _NEXT) if rests - {""} else f"[{_NEXT}{_OTHER_LETTERS}]{tail}"
         found.append(f"{head}(?:{inner})" + ("" if "" in rests else "?"))
     return "|".join(found)
@@ -50,26 +45,34 @@ KEYWORDS = ("inf", "nan", "rel", "seq", "concurrent", "import", "using", "const"
 """Words that are no names, or not everywhere: a model has to quote them."""
 
 _QUOTED_NAME = r"`(?:[^`\\\n]|\\[^\n])+`"
+_DECIMAL = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_IN_UNITS = f"A-Za-z0-9_%{_OTHER_LETTERS}"
 
 PLAIN: Mapping[str, str] = MappingProxyType(
     {
         "NAME": f"{words_except(KEYWORDS)}|{_QUOTED_NAME}",
-        "NUMBER": r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?|[+-]?inf|nan",
-        "QUANTITY": r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?[A-DF-Za-df-z%°µ][A-Za-z0-9%]*(?:[/*·][A-Za-z0-9%]+|\^-?[0-9]+)*",
         "STRING": r'"(?:[^"\\]|\\[^\n])*"|' + r"'(?:[^'\\]|\\[^\n])*'|" + r'"""(?:"?"?[^"])*"""',
         "EXPRESSION": r"\$\{[^{}]*\}",
         "EDGE_WORD": "@",
     }
 )
 """Instead of the terminals of these names."""
-NAME_AT_SIGN = f"{words_except((*KEYWORDS, 'i*'))}|{_QUOTED_NAME}"
-"""Names that may stand right behind a direction: ``-i`` begins the number ``-inf``, and programs with a lexer do not go back from there."""
+WITHIN: Mapping[str, str] = MappingProxyType(
+    {
+        "PLUS-MINUS": "[+-]",
+        "MINUS": "-",
+        "ARROW": "->|<-|<>|~",
+        "UNSIGNED": f"{_DECIMAL}|inf|nan",
+        "WITH-UNIT": f"{_DECIMAL}(?:[A-DF-Za-df-z%°µ][{_IN_UNITS}]*|[eE][A-Za-z_%][{_IN_UNITS}]*)",
+        "TIMES": "[/*·]",
+        "UNIT": f"[{_IN_UNITS}]+",
+        "POWER": r"\^-?[0-9]+",
+    }
+)
+"""The parts of numbers, quantities and directions."""
 DROPPED = frozenset({"NUMBERS", "MATRIX", "QUOTED_REF", "LEGACY_HEADER", "CONSTANT", "USING", "SEMICOLON", "group"})
 """Lists are the rule `vector`; the others, the group of arcs among them, are forms that no text is printed in."""
 
-_COMMENT = r"//[^\n]*\n|/\*(?:[^*]|\*+[^*/])*\*+/"
-_BLANK = r"[ \t\r\n]"
-BLANKS = rf"{_BLANK}+(?:(?:{_COMMENT}){_BLANK}*)*"
-"""What stands between two words: a blank, and comments behind it. The legacy comments with # are left out."""
-BEGINNING = rf"(?:{_COMMENT}|{_BLANK})+"
-"""What may stand before the first word."""
+_COMMENT = r"(?:#|//)[^\n]*\n|/\*(?:[^*]|\*+[^*/])*\*+/"
+BLANKS = rf"(?:[ \t\r\n]|{_COMMENT})+"
+"""What stands between two words."""
