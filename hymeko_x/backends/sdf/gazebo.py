@@ -10,7 +10,6 @@ import re
 import sys
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
-from xml.parsers.expat import ExpatError
 
 from msgspec.structs import replace
 
@@ -57,11 +56,7 @@ def obey_gazebo_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
     held = {(key, extra) for key, extras in mechanism.extras.items() for extra in extras if extra.format == words.FORMAT}
     names: dict[Id, set[str]] = {}
     fields: Fields = {}
-    for text in texts:
-        try:
-            node = parse_text(text)
-        except ExpatError:
-            continue
+    for node in filter(None, map(fragments.parsed, texts)):
         for key, found in extras_of(node, mechanism, fields):
             extra = _with_namespaces(found, declared, context)
             if extra is not None and (key, extra) not in held:

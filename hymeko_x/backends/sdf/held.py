@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
-from xml.parsers.expat import ExpatError
 
 from hymeko_x.backends.sdf.gazebo import Fields, extras_of
 from hymeko_x.backends.sdf.joints import joint_tag
@@ -16,7 +15,6 @@ from hymeko_x.formats.sdf import fragments
 from hymeko_x.formats.sdf.notations import is_from_sdf
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.parts import Joint
-from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.printing import ready
 from hymeko_x.xml.text import unescaped
 from hymeko_x.xml.tree import Node
@@ -140,9 +138,8 @@ class _Given(NamedTuple):
 def _given(mechanism: Mechanism) -> Iterator[_Given]:
     """What each element of each fragment of a mechanism gives."""
     for text in (extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.text.startswith(_FRAGMENT)):
-        try:
-            fragment = parse_text(text)
-        except ExpatError:
+        fragment = fragments.parsed(text)
+        if fragment is None:
             continue
         for child in (child for child in fragment.children if child.is_element):
             fields: Fields = {}

@@ -6,11 +6,17 @@ Source: libsdformat's reader of such files. An element for which they have no ow
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING
+from xml.parsers.expat import ExpatError
+
+from hymeko_x.xml.parse import parse_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+
+    from hymeko_x.xml.tree import Node
 
 TAG = "gazebo"
 
@@ -70,3 +76,12 @@ _SENSOR = re.compile(r"""<sensor\b[^>]*?\bname=["']([^"']*)["']""")
 def sensor_names(texts: Iterable[str]) -> frozenset[str]:
     """The names of the sensors in fragments."""
     return frozenset(name for text in texts if text.startswith(f"<{TAG}") for name in _SENSOR.findall(text))
+
+
+@lru_cache(256)
+def parsed(text: str) -> Node | None:
+    """The tree of a fragment, which is never changed: reading, writing and comparing ask for it. None for a text that is no XML."""
+    try:
+        return parse_text(text)
+    except ExpatError:
+        return None

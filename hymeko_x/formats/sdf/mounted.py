@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
-from xml.parsers.expat import ExpatError
 
-from hymeko_x.formats.sdf.fragments import TAG
+from hymeko_x.formats.sdf.fragments import TAG, parsed
 from hymeko_x.formats.sdf.notations import WrittenPose
 from hymeko_x.formats.sdf.sensors import CAMERA_TURN, HFOV, IMAGE
 from hymeko_x.formats.sdf.values import NUMBER, BadText, read_pose
 from hymeko_x.ir.decimals import shortest
 from hymeko_x.ir.parts import Camera, Frame
 from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, numbers_text, rpy_of
-from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.printing import Tag, ready
 
 if TYPE_CHECKING:
@@ -30,9 +28,8 @@ def mounted_in(text: str) -> Iterator[Mounted]:
     """Link, name and pose in the link of each camera of a fragment, and of each IMU, of which the part is its frame."""
     if not text.startswith(f"<{TAG}") or "<sensor" not in text:
         return
-    try:
-        fragment = parse_text(text)
-    except ExpatError:
+    fragment = parsed(text)
+    if fragment is None:
         return
     link = fragment.attributes.get("reference", "")
     for node in (child for child in fragment.children if child.tag == "sensor" and link):
