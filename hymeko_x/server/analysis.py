@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
 import re
-from functools import cached_property
+from collections.abc import Callable
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 from urllib.parse import unquote, urlparse
 
@@ -15,23 +17,34 @@ from hymeko_x.server.reader import Reading, read
 from hymeko_x.server.text import Definition, Places, definitions, unquoted
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
 
 _IMPORT = re.compile(r'\bimport\s+"([^"\n]+)"(?:\s+as\s+(`[^`]*`|\w+))?')
 
 
+Robot = Callable[[], "Mechanism | None"]
+"""A robot, which another process may have read: it is unpickled when it is asked for."""
+
+
+def no_robot() -> None:
+    """The robot of a text that never could be read."""
+
+
 class Analysis(Struct, dict=True):
-    """What is known of one version of a document. ``robot`` is that of the last version that could be read."""
+    """What is known of one version of a document."""
 
     path: str
     text: str
     places: Places
     format: Format | None
     diagnostics: list[Diagnostic] = field(default_factory=list)
-    robot: Mechanism | None = None
+    last_robot: Robot = no_robot
+
+    @property
+    def robot(self) -> Mechanism | None:
+        """The robot of the last version that could be read."""
+        return self.last_robot()
 
     @cached_property
     def definitions(self) -> list[Definition]:
@@ -66,18 +79,29 @@ def path_of(uri: str) -> str:
     return unquote(urlparse(uri).path) if uri.startswith("file:") else uri
 
 
-def analyse(uri: str, text: str, before: Analysis | None, read: Callable[[str, str], Reading] = read) -> Analysis:
-    """A document read anew; where it cannot be, its robot is that of the version before."""
-    path = path_of(uri)
-    found = read(path, text)
-    row = None if found.format is None else formats.by_name(found.format)
-    robot = before.robot if found.robot is None and before is not None else found.robot
-    return Analysis(path, text, Places(text), row, found.diagnostics, robot)
+def analyse(uri: str, text: str) -> Analysis:
+    """A document read at once."""
+    reading = read(path_of(uri), text)
+    document = analysis(uri, text, reading, None)
+    document.last_robot = lambda: reading.robot
+    return document
+
+
+def analysis(uri: str, text: str, reading: Reading, before: Analysis | None) -> Analysis:
+    """A document of which the robot is not there yet: it is that of the version before."""
+    row = None if reading.format is None else formats.by_name(reading.format)
+    robot = no_robot if before is None else before.last_robot
+    return Analysis(path_of(uri), text, Places(text), row, reading.diagnostics, robot)
+
+
+def unpickled(data: bytes) -> Robot:
+    """The robot that a process sent."""
+    return cache(lambda: pickle.loads(data))
 
 
 def unread(text: str, before: Analysis) -> Analysis:
     """A document with another text, about whose robot the last version tells."""
-    return Analysis(before.path, text, Places(text), before.format, before.diagnostics, before.robot)
+    return Analysis(before.path, text, Places(text), before.format, before.diagnostics, before.last_robot)
 
 
 SEVERITIES = {Severity.ERROR: 1, Severity.WARNING: 2, Severity.NOTE: 3}

@@ -12,8 +12,8 @@ from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from hymeko_x.server import answers
-from hymeko_x.server.analysis import SEVERITIES, Analysis, analyse, path_of, unread
-from hymeko_x.server.reader import Reader
+from hymeko_x.server.analysis import SEVERITIES, Analysis, analyse, analysis, path_of, unpickled, unread
+from hymeko_x.server.reader import Reader, Reading
 from hymeko_x.server.renaming import rename_element
 from hymeko_x.server.workspace import Workspace
 from hymeko_x.version import __version__
@@ -31,7 +31,7 @@ class _Server(LanguageServer):
         super().__init__("hymeko-x", __version__)
         self.known: dict[str, Analysis] = {}
         self.reader = Reader()
-        self._waiting: dict[str, asyncio.Future[Analysis]] = {}
+        self._waiting: dict[str, asyncio.Future[None]] = {}
         self._thread = ThreadPoolExecutor(1, "reader")
 
     def document(self, uri: str) -> Analysis:
@@ -39,7 +39,7 @@ class _Server(LanguageServer):
         text = self.workspace.get_text_document(uri).source
         known = self.known.get(uri)
         if known is None:
-            self.known[uri] = analyse(uri, text, None)
+            self.known[uri] = analyse(uri, text)
         elif known.text != text:
             self.known[uri] = unread(text, known)
         return self.known[uri]
@@ -64,9 +64,21 @@ class _Server(LanguageServer):
         if uri not in self.workspace.text_documents:
             return
         text = self.workspace.get_text_document(uri).source
-        reading = asyncio.get_running_loop().run_in_executor(self._thread, analyse, uri, text, self.known.get(uri), self.reader.read)
-        reading.add_done_callback(lambda found: None if found.cancelled() else self._show(uri, found.result()))
-        self._waiting[uri] = reading
+        loop = asyncio.get_running_loop()
+        self._waiting[uri] = reading = loop.run_in_executor(self._thread, self._read, loop, uri, text)
+        reading.add_done_callback(lambda done: done.cancelled() or done.result())
+
+    def _read(self, loop: asyncio.AbstractEventLoop, uri: str, text: str) -> None:
+        """Have a text read; its diagnostics are sent before its robot is there."""
+        found: list[Analysis] = []
+
+        def show(reading: Reading) -> None:
+            found.append(analysis(uri, text, reading, self.known.get(uri)))
+            loop.call_soon_threadsafe(self._show, uri, found[0])
+
+        robot = self.reader.read(path_of(uri), text, show)
+        if robot:
+            found[0].last_robot = unpickled(robot)
 
     def _show(self, uri: str, document: Analysis) -> None:
         """Send the diagnostics of a document that has been read, unless it has been changed since."""

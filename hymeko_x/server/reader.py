@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import pickle
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ from hymeko_x.source import Source
 from hymeko_x.validation import validate
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from multiprocessing.connection import Connection
     from multiprocessing.context import SpawnProcess
 
@@ -55,19 +57,24 @@ class Reader:
     def __init__(self) -> None:
         self._running: tuple[SpawnProcess, Connection] | None = None
 
-    def read(self, path: str, text: str) -> Reading:
-        """A text as :func:`read` reads it, or one error where that ends the process; the process writes why to standard error."""
+    def read(self, path: str, text: str, show: Callable[[Reading], None]) -> bytes:
+        """Have a text read as :func:`read` reads it, and show what it says without its robot; then that, pickled, or nothing.
+
+        The diagnostics are there before the robot is handed over. One error is shown where reading ends the process, which writes why to
+        standard error.
+        """
         process, connection = self._running = self._running or _started()
         try:
             connection.send((path, text))
-            found: Reading = connection.recv()
+            show(connection.recv())
+            return connection.recv_bytes()
         except (EOFError, OSError):
             process.join()
             self._running = None
             report = Report()
             report.error(codes.BUG, f"the process that read the text ended with exit code {process.exitcode}", Origin(path))
-            return Reading(None, report.diagnostics, None)
-        return found
+            show(Reading(None, report.diagnostics, None))
+            return b""
 
     def end(self) -> None:
         """End the process, which may be at a text."""
@@ -92,4 +99,7 @@ def _serve(texts: Connection) -> None:
             path, text = texts.recv()
         except EOFError:
             return
-        texts.send(read(path, text))
+        found = read(path, text)
+        robot, found.robot = found.robot, None
+        texts.send(found)
+        texts.send_bytes(b"" if robot is None else pickle.dumps(robot))

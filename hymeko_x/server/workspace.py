@@ -31,7 +31,7 @@ class Workspace:
         path = path.resolve()
         if path not in self._known:
             try:
-                self._known[path] = analyse(path.as_uri(), path.read_text("utf-8"), None)
+                self._known[path] = analyse(path.as_uri(), path.read_text("utf-8"))
             except (OSError, UnicodeDecodeError):
                 return None
         return self._known[path] if self._known[path].is_text else None

@@ -6,12 +6,14 @@ import asyncio
 import multiprocessing
 import multiprocessing.context
 import os
+import pickle
 import sys
 from collections.abc import Awaitable, Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from msgspec.structs import replace
 
 pytest.importorskip("pygls")
 
@@ -21,7 +23,7 @@ from pygls.lsp.client import LanguageClient
 
 from hymeko_x.server import answers
 from hymeko_x.server.analysis import Analysis, analyse, unread
-from hymeko_x.server.reader import Reader, read
+from hymeko_x.server.reader import Reader, Reading, read
 from hymeko_x.server.workspace import Workspace
 from tests.pace import assert_at_most
 from tests.robot.robots import ARM, URDF_HAND
@@ -343,12 +345,16 @@ def test_questions_are_answered_while_a_long_text_is_read(tmp_path: Path) -> Non
 @pytest.mark.unread("HX901", "HX060")
 def test_a_text_that_ends_the_process_that_reads_is_an_error_and_the_next_one_is_read(tmp_path: Path) -> None:
     reader, path = Reader(), str(tmp_path / "arm.hymeko")
-    assert reader.read(path, "arm : robot { base { mass 1 } }") == read(path, "arm : robot { base { mass 1 } }")
+    shown: list[Reading] = []
+    robot = reader.read(path, "arm : robot { base { mass 1 } }", shown.append)
+    assert replace(shown.pop(), robot=pickle.loads(robot)) == read(path, "arm : robot { base { mass 1 } }")
     (process,) = (child for child in multiprocessing.active_children() if isinstance(child, multiprocessing.context.SpawnProcess))
     process.kill()
-    (found,) = reader.read(path, "arm : robot {}").diagnostics
+    assert reader.read(path, "arm : robot {}", shown.append) == b""
+    (found,) = shown.pop().diagnostics
     assert str(found) == f"{path}: error[HX901]: the process that read the text ended with exit code -9"
-    assert reader.read(path, "arm : robot {").diagnostics == read(path, "arm : robot {").diagnostics
+    assert reader.read(path, "arm : robot {", shown.append) == b""
+    assert shown == [read(path, "arm : robot {")]
     reader.end()
 
 
@@ -357,11 +363,11 @@ def test_a_question_after_a_keystroke_in_a_thousand_lines_is_answered_soon() -> 
     bodies = [f"  body_{number} {{ mass 1 com [0 0 10cm] inertia [1 1 1] shape {{ box [0.1 0.1 0.1] }} }}" for number in range(500)]
     joints = [f"  @joint_{number} {{ [0 0 0.1] + body_{number} - body_{number + 1} axis=Y limit [-9 9] }}" for number in range(499)]
     text = "\n".join(["r : robot {", *bodies, *joints, "}"])
-    known = analyse("long.hymeko", text, None)
+    known = analyse("long.hymeko", text)
     assert known.diagnostics == []
     questions: dict[str, Callable[[Analysis], object]] = {
         "formatting": answers.formatting,
-        "diagnostics": lambda document: analyse("long.hymeko", document.text, known),
+        "diagnostics": lambda document: analyse("long.hymeko", document.text),
         "completion": lambda document: answers.completion(document, types.Position(700, 24)),
         "hover": lambda document: answers.hover(document, types.Position(400, 4)),
         "references": lambda document: answers.references(document, types.Position(400, 4)),
