@@ -50,6 +50,7 @@ KNOWN: dict[str, str | tuple[str, ...]] = {
     "soccer_ball": "",  # a cube of six images; other formats have their mean colour
     "coupled_half_cheetah": ("urdf", "xacro", "sdf"),  # its tendon is drawn, and they have none
     "actuator/arm21": ("urdf", "xacro", "sdf"),  # the same
+    "tendon/pulley": ("urdf", "xacro", "sdf"),  # the same
     "tests/assets/constraints": "sdf",  # loops that start open and hold free bodies: SDF has them as the joints, which are closed
     "test_data/capsule": ("urdf", "xacro"),  # spheres stand for the ends of a capsule, and MuJoCo draws them with other facets
 }
