@@ -148,7 +148,7 @@ class Machine:
         """
         action = stack[-3].get(kind)
         if action is None and kind not in self._divisible:
-            kind = self._kind(kind, word, stack[-3], start)
+            kind = self._kind(word, stack[-3], start)
             action = stack[-3][kind]
         while type(action) is _Reduction:
             size, origin, number, pick = action
@@ -216,14 +216,12 @@ class Machine:
             yield kind, text[position : match.end(kind)], position
             position = match.end()
 
-    def _kind(self, kind: str, word: str, state: _State, start: int) -> str:
-        """The terminal of a keyword. The words of the old notation (``rel``) are names where no edge may stand."""
+    def _kind(self, word: str, state: _State, start: int) -> str:
+        """The terminal of a keyword, where the grammar has room for it."""
         keyword = self._keywords.get(word)
-        if keyword is not None and keyword in state:
-            return keyword
-        if kind not in ("NUMBER", "KEYWORD") and word.isidentifier() and "NAME" in state:
-            return "NAME"
-        raise ParseError(start)
+        if keyword is None or keyword not in state:
+            raise ParseError(start)
+        return keyword
 
 
 def _shift(stack: list[Any], action: Any, value: Any, start: int) -> None:

@@ -162,6 +162,10 @@ def _is_cut(text: bytearray) -> bool:
 
 
 def _random(allowed: list[int], chance: random.Random) -> int:
+    """A token by chance. Quoted texts and comments, in which everything may stand, are short."""
+    ends = [token for token in allowed if _Vocabulary.tokens[token] in QUOTES]
+    if ends and chance.random() < 0.3 and sum(token < 256 for token in allowed) > MOST_OF_ALL:
+        return chance.choice(ends)
     words = [token for token in allowed if 256 <= token < END]
     return chance.choice(words if words and chance.random() < 0.95 else [token for token in allowed if token != END])
 

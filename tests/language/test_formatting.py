@@ -113,7 +113,7 @@ LAYOUTS = {
     ),
     "a { x [1 2\n 3 4\n] }": "a {\n  x [1 2\n    3 4\n  ]\n}\n",
     "a {mass 2 ;b{x 1;}\nc{};}": "a {\n  mass 2; b { x 1; }\n  c {};\n}\n",
-    "a{const K=g\n;}": "a {\n  const K=g\n    ;\n}\n",
+    "a{K=g\n;}": "a {\n  K=g\n    ;\n}\n",
     "a{v[1\n,2](+e,-b)}": "a {\n  v [1, 2] (+ e, - b)\n}\n",
     "a {\n\n\n  b {}\n\n\n  c {}\n\n}": "a {\n  b {}\n\n  c {}\n}\n",
     "@e{(a - b),(+ c)x(1 + 2)}": "@e { (a - b), (+ c) x (1 + 2) }\n",
