@@ -135,7 +135,7 @@ def test_ten_thousand_mutated_texts_are_judged_alike(name: str) -> None:
 GOOD = """r{a -inf1} r{a=-info.b} r{a~infinite{}} r{a -import1} r{-a.inf1} r{[-inf 1]-inf2} r{a//x
 .b{}} r{a/**/-b} r{x[.5,1.,-.5e3,]} r{x/**/2mm//y
 } r{x#y
-1e3rad-2} r{x[-a,+b]} r{"a"b{}} r{x<?>y"a"} r{m${a}n 1}"""
+1e3rad-2} r{x[-a,+b]} r{x[-e +E]} r{"a"b{}} r{x<?>y"a"} r{m${a}n 1}"""
 BAD = """r{a-1} r{a.5} r{x|2mm.5} r{x|1-a} r{x|2mm-|a} r{x|1->a} r{[0|0inf.3]} r{x|"a""b"} r{[,1]} r{[1,,2]} r{[a,,b]} use{} r{a-use}
 r{as|1} r{import|1} r{x|1inf.3} r{x|inf-a} r{x|2e5e6}"""
 
