@@ -39,6 +39,12 @@ def shortest_of(values: Iterable[float], least: float = 0.0) -> tuple[float, ...
     return tuple([shortest(value, scale) for value in found])
 
 
+def clean_vector(vector: tuple[float, float, float]) -> tuple[float, float, float]:
+    """A computed place in m or direction without noise: the components relative to the largest of them, to 1 at least."""
+    x, y, z = shortest_of(vector, 1.0)
+    return x, y, z
+
+
 def clean_angles(angles: Iterable[float]) -> tuple[float, ...]:
     """Computed angles of a rotation in rad without noise: quarter and half turns are the doubles nearest to them, as programs write them.
 

@@ -13,7 +13,7 @@ from msgspec import Struct
 from msgspec.json import encode
 from msgspec.structs import replace
 
-from hymeko_x.ir.decimals import clean_quat, shortest, shortest_of
+from hymeko_x.ir.decimals import clean_quat, clean_vector, shortest, shortest_of
 from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.parts import Inertial, Mesh, Subset
 from hymeko_x.ir.values import Pose, unit_quat
@@ -51,8 +51,7 @@ def shorten_computed(mechanism: Mechanism, source: Mechanism) -> Mechanism:
 
 def clean_pose(pose: Pose) -> Pose:
     """A computed pose without noise; lengths relative to 1 m at least. It has no notation."""
-    x, y, z = shortest_of(pose.xyz, 1.0)
-    return replace(pose, xyz=(x, y, z), quat=unit_quat(clean_quat(pose.quat)), written=None)
+    return replace(pose, xyz=clean_vector(pose.xyz), quat=unit_quat(clean_quat(pose.quat)), written=None)
 
 
 def _changed(parts: Mapping[Id, Any], before: Mapping[Id, Any]) -> dict[Id, Any]:

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf.joints import ANCHOR, AXIS, JOINT
 from hymeko_x.formats.mjcf.notations import frame_of, is_joint
-from hymeko_x.ir.decimals import shortest_of
+from hymeko_x.ir.decimals import clean_vector
 from hymeko_x.ir.parts import DofKind
 from hymeko_x.ir.values import IDENTITY, ZERO, Written, Z, apply, inverse, rotate, unit
 
@@ -53,8 +53,8 @@ def _values(sheet: MjcfSheet, view: JointView, dof: Dof) -> dict[str, object]:
     """The dof as it is seen from the body at the reference configuration."""
     axis, anchor, written = dof.axis, dof.anchor, dof.written
     if view.child_pose != IDENTITY:
-        axis = _without_noise(rotate(view.child_pose.quat, axis))
-        anchor, written = _without_noise(apply(view.child_pose, anchor)), None
+        axis = clean_vector(rotate(view.child_pose.quat, axis))
+        anchor, written = clean_vector(apply(view.child_pose, anchor)), None
     if not sheet.from_mjcf:
         axis, anchor, written = _explicit(dof.kind, axis, anchor)
     limits = dof.limits
@@ -73,12 +73,6 @@ def _values(sheet: MjcfSheet, view: JointView, dof: Dof) -> dict[str, object]:
         "armature": dof.armature,
         "actuatorfrcrange": (effort, DofKind.SLIDE),
     }
-
-
-def _without_noise(vector: Vec3) -> Vec3:
-    """A computed direction or place, in m."""
-    x, y, z = shortest_of(vector, 1.0)
-    return x, y, z
 
 
 def _explicit(kind: DofKind, axis: Vec3, anchor: Vec3) -> tuple[Vec3, Vec3, Written | None]:

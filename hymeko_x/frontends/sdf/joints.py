@@ -11,7 +11,7 @@ from hymeko_x.formats.sdf.gearboxes import GEARBOX
 from hymeko_x.formats.sdf.values import DYNAMICS, LIMITS, NUMBER, OLD_PITCH, PITCH, STRENGTH_LIMITS, VECTOR, BadText
 from hymeko_x.frontends.sdf.models import body_of
 from hymeko_x.frontends.sdf.sensors import read_joint_sensor
-from hymeko_x.ir.decimals import shortest_of
+from hymeko_x.ir.decimals import clean_vector
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import WORLD, joint_edge
 from hymeko_x.ir.parts import Coupling, Dof, DofKind, Joint, Limits, World
@@ -159,8 +159,7 @@ def read_axis(axis: Node, tag: str, key: Id, model: Model, builder: SdfBuilder) 
     if frame is not None:
         builder.written.setdefault(key, {})[f"{tag}/xyz"] = text
         turn = builder.frames.relative(frame, key).quat
-        x, y, z = direction if turn == NO_ROTATION else shortest_of(unit(rotate(turn, direction)), 1.0)
-        return (x, y, z), None
+        return direction if turn == NO_ROTATION else clean_vector(unit(rotate(turn, direction))), None
     return direction, None if direction == numbers else Written("axis", numbers)
 
 

@@ -14,7 +14,7 @@ from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.materials import bound_to
 from hymeko_x.frontends.usd.transforms import numbers_of, rotation_of
-from hymeko_x.ir.decimals import shortest, shortest_of
+from hymeko_x.ir.decimals import clean_vector, shortest, shortest_of
 from hymeko_x.ir.parts import Body, Inertial, InertialWritten, MeshShape, Role, Shape
 from hymeko_x.ir.solids import Solid, joined, solid_of
 from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, rotate_tensor
@@ -167,13 +167,13 @@ def _massless(stated: Inertial) -> Inertial:
 def _completed(stated: Inertial, solid: Solid) -> Inertial:
     """The authored values, with the others from the colliders; their tensor is scaled to an authored mass, and stays where it is."""
     mass = stated.mass if stated.mass is not None else shortest(solid.mass)
-    x, y, z = stated.com if any(stated.com) else shortest_of(solid.com, 1.0)
+    com = stated.com if any(stated.com) else clean_vector(solid.com)
     if stated.tensor is not None:
-        return replace(stated, mass=mass, com=(x, y, z))
+        return replace(stated, mass=mass, com=com)
     tensor = solid.times(mass / solid.mass).tensor if solid.mass else solid.tensor
     xx, yy, zz, xy, xz, yz = shortest_of(tensor)
     short = (xx, yy, zz, xy, xz, yz)
-    return Inertial(mass, (x, y, z), short if physical(short) == short else tensor)
+    return Inertial(mass, com, short if physical(short) == short else tensor)
 
 
 # ---- solids of density 1 -------------------------------------------------------------------------------------------------------------
