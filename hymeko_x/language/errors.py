@@ -32,7 +32,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _DIGIT_NAME = re.compile(r"\d+[^\W\d]\w*")
 _WITH_NEIGHBOURS = re.compile(r"(?=[\d.+-])[+-]?(?:\d|\.\d)[\w.%°/*·^+-]*")
 _GLUED = re.compile(r"(use|as|using|import)(?=\w)")
-_WHOLE_WORD = re.compile(r"const\b[^;{}\n]*;|[\w.]+|\S")
+_WHOLE_WORD = re.compile(r"[\w.]+|\S")
 _NAME_AND_PATH = re.compile(r"(?<![\w:.`])(?<![:@] )([^\W\d]\w*)\s+([^\W\d]\w*(?:\.(?:[^\W\d]\w*|`[^`\n]*`))+)\s*\Z")
 """A name and a path behind it, as in ``at left.flange``."""
 _BEGINNINGS = {
@@ -58,8 +58,7 @@ _CHARACTER_HINTS = {
 def explain_syntax_error(text: str, name: str, offset: int) -> Refusal:
     """The refusal (HX060) for a text that is not HyMeKo: lark reads it again, for the terminals that it expected.
 
-    ``offset`` is where the machine refuses it. lark takes some words for names and others for two, `- const k = 1;` and `useful`, where the
-    machine does not.
+    ``offset`` is where the machine refuses it. lark takes some words for two, such as `useful`, where the machine does not.
     """
     from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
@@ -73,7 +72,7 @@ def explain_syntax_error(text: str, name: str, offset: int) -> Refusal:
     word = _WHOLE_WORD.match(text, offset)
     found = word[0] if word else ""
     glued = _GLUED.match(found)
-    hint = f"a blank stands behind '{glued[0]}'" if glued else "a constant stands between items" if found.startswith("const") else ""
+    hint = f"a blank stands behind '{glued[0]}'" if glued else ""
     return refuse(
         codes.SYNTAX, f"unexpected {_shown(found)}", Origin(name, line, column), hint=hint, excerpt=excerpt(text, line, column, len(found))
     )

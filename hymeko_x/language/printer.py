@@ -24,6 +24,7 @@ from hymeko_x.language.syntax import (
     Using,
     Value,
 )
+from hymeko_x.language.terminals import KEYWORDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -44,7 +45,6 @@ _ON_LINES_OF_THEIR_OWN = (Node, TextBlock, Comment)
 WIDTH = 120
 INDENT = "  "
 _PLAIN_NAME = re.compile(r"[^\W\d]\w*")
-_WORDS = frozenset({"rel", "seq", "concurrent", "use", "import", "using", "const", "as", "inf", "nan"})
 _FEW_ESCAPES = str.maketrans(
     {chr(code): f"\\u{code:04x}" for code in (*range(32), 0x7F, 0xFFFE, 0xFFFF) if chr(code) not in "\n\t"}
     | {"\\": "\\\\", "\r": "\\r", "\0": "\\0"}
@@ -99,7 +99,7 @@ def print_field(name: str, value: Value | None, type: str = "") -> str:
 def print_name(name: str) -> str:
     """A name, in backticks unless it is a plain word (or was quoted by its author)."""
     is_plain = (name.isidentifier() and name.isascii()) or _PLAIN_NAME.fullmatch(name)
-    if is_plain and name not in _WORDS and not isinstance(name, QuotedName):
+    if is_plain and name not in KEYWORDS and not isinstance(name, QuotedName):
         return name
     return "`" + name.translate(_ESCAPES).replace("`", "\\`") + "`"
 

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
     from hymeko_x.language.machine import Convert
 
+KEYWORDS = ("inf", "nan", "rel", "seq", "concurrent", "import", "using", "const", "as", "use")
+"""Words that are no names without backticks."""
 _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
 _ESCAPE = re.compile(r"\\(u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|.)", re.DOTALL)
 _ESCAPED = {"n": "\n", "t": "\t", "r": "\r", "0": "\0"}

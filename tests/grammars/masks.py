@@ -161,10 +161,15 @@ def _is_cut(text: bytearray) -> bool:
     return False
 
 
+def _is_quoted(allowed: list[int]) -> bool:
+    """Whether the text is within quotes or in a comment, where nearly every byte may follow."""
+    return sum(token < 256 for token in allowed) > MOST_OF_ALL
+
+
 def _random(allowed: list[int], chance: random.Random) -> int:
     """A token by chance. Quoted texts and comments, in which everything may stand, are short."""
     ends = [token for token in allowed if _Vocabulary.tokens[token] in QUOTES]
-    if ends and chance.random() < 0.3 and sum(token < 256 for token in allowed) > MOST_OF_ALL:
+    if ends and chance.random() < 0.3 and _is_quoted(allowed):
         return chance.choice(ends)
     words = [token for token in allowed if 256 <= token < END]
     return chance.choice(words if words and chance.random() < 0.95 else [token for token in allowed if token != END])
@@ -173,7 +178,6 @@ def _random(allowed: list[int], chance: random.Random) -> int:
 def _closing(allowed: list[int], step: int) -> int:
     """The token that ends what is open."""
     by_text = {_Vocabulary.tokens[token]: token for token in allowed}
-    is_quoted = sum(token < 256 for token in allowed) > MOST_OF_ALL
     turn = step % len(FILLING)
-    wanted = [QUOTES[step % len(QUOTES)]] if is_quoted else [*CLOSING, *FILLING[turn:], *FILLING[:turn]]
+    wanted = [QUOTES[step % len(QUOTES)]] if _is_quoted(allowed) else [*CLOSING, *FILLING[turn:], *FILLING[:turn]]
     return next((by_text[word] for word in wanted if word in by_text), allowed[step % len(allowed)])

@@ -16,8 +16,9 @@ from hymeko_x.diagnostics import Refusal
 from hymeko_x.language.grammar import grammar_text
 from hymeko_x.language.models.printing import PRINTERS, gbnf, llguidance
 from hymeko_x.language.models.rules import plain_rules
-from hymeko_x.language.models.terminals import _OTHER_LETTERS, DROPPED, KEYWORDS, PLAIN
+from hymeko_x.language.models.terminals import _OTHER_LETTERS, DROPPED, PLAIN
 from hymeko_x.language.parser import parse
+from hymeko_x.language.terminals import KEYWORDS
 from tests.grammars.masks import accepts, fault, walk
 
 ROOT = Path(__file__).parents[2]

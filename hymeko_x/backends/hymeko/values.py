@@ -13,6 +13,7 @@ from hymeko_x.formats.hymeko.units import MOST_DIGITS, rounded, unit_factor
 from hymeko_x.ir import parts
 from hymeko_x.ir.values import NO_ROTATION, Pose, number_text
 from hymeko_x.language.syntax import Quantity, Query, Ref
+from hymeko_x.language.terminals import KEYWORDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -28,7 +29,6 @@ _FEWEST = 5
 """An angle with fewer digits is not taken for one that was rounded."""
 _UNITS_BLOCK = 15  # letters of `units { angle rad }`
 _WORD = re.compile(r"[^\W\d]\w*")
-_NO_WORDS = frozenset({"inf", "nan", "rel", "seq", "concurrent", "use", "import", "using", "const", "as"})
 
 
 class Angles(Struct, frozen=True):
@@ -85,7 +85,7 @@ def value_of(value: object) -> Value:
         return float(value)
     if isinstance(value, tuple):
         return tuple(value if isinstance(value, str) else value_of(value) for value in value)
-    if isinstance(value, str) and _WORD.fullmatch(value) and value not in _NO_WORDS:
+    if isinstance(value, str) and _WORD.fullmatch(value) and value not in KEYWORDS:
         return Ref((value,))
     if value is None:
         return Query()

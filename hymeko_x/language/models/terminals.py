@@ -9,6 +9,8 @@ import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from hymeko_x.language.terminals import KEYWORDS
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
@@ -40,9 +42,6 @@ def _without(letters: str, left_out: list[str]) -> str:
     kept = [chr(code) for code in range(128) if re.match(f"[{letters}]", chr(code)) and chr(code) not in left_out]
     return "".join(kept)
 
-
-KEYWORDS = ("inf", "nan", "rel", "seq", "concurrent", "import", "using", "const", "as", "use")
-"""Words that are no names, or not everywhere: a model has to quote them."""
 
 _QUOTED_NAME = r"`(?:[^`\\\n]|\\[^\n])+`"
 _DECIMAL = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
