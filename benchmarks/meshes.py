@@ -20,7 +20,7 @@ import hymeko_x as hx
 from benchmarks.robots import robots
 from benchmarks.usd import WITH_MESHES
 from benchmarks.yardstick import least_in_turns
-from hymeko_x.meshes import collada, weld
+from hymeko_x.meshes import collada, numerals, weld
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,7 +36,8 @@ def first_by_unique(rows: NDArray[Any]) -> NDArray[np.intp]:
 
 PLAINER: dict[str, tuple[Any, str, Callable[..., Any]]] = {
     "points joined by np.unique": (weld, "_first_equal", first_by_unique),
-    "COLLADA by trimesh": (collada, "collada_groups", lambda data: None),
+    "COLLADA by trimesh": (collada, "collada_groups", lambda data, **_: None),
+    "decimals by numpy": (numerals, "_decimals", lambda data: None),
 }
 
 

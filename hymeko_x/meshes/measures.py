@@ -19,14 +19,17 @@ def face_normals(points: NDArray[np.float32], corners: NDArray[Any]) -> NDArray[
 
     ``points`` is (m, 3), ``corners`` the rows of ``points`` of all triangles, flat.
     """
-    triangles = points[corners].reshape(-1, 3, 3)
-    ax, ay, az = np.subtract(triangles[:, 1], triangles[:, 0], dtype=np.float64).T
-    bx, by, bz = np.subtract(triangles[:, 2], triangles[:, 0], dtype=np.float64).T
-    normals = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
-    lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
+    columns = points.T.astype(np.float64, order="C")
+    first, second, third = (columns.take(corners[start::3], axis=1) for start in range(3))
+    second -= first
+    third -= first
+    (ax, ay, az), (bx, by, bz) = second, third
+    normals = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    lengths = np.sqrt((normals * normals).sum(axis=0))
     flat = ~(lengths > 0.0)
-    normals[flat], lengths[flat] = (0.0, 0.0, 1.0), 1.0
-    return np.asarray(normals / lengths[:, None], dtype=np.float32)
+    normals[:, flat], lengths[flat] = [[0.0], [0.0], [1.0]], 1.0
+    normals /= lengths
+    return normals.T.astype(np.float32, order="C")
 
 
 def volume_of_sheets(part: Submesh) -> float:
@@ -70,6 +73,6 @@ def turned_triangles(part: Submesh) -> int:
     rows = part.faces if part.normal_corners is None else part.normal_corners
     if rows.shape != part.faces.shape or (rows.size and not (rows.min() >= 0 and rows.max() < len(part.normals))):
         return 0
-    given = part.normals[rows].sum(axis=1)
+    given = sum(part.normals.take(rows[:, corner], axis=0) for corner in range(3))
     with np.errstate(invalid="ignore", over="ignore"):
         return int((np.einsum("ij,ij->i", face_normals(part.points.astype(np.float64), part.faces.ravel()), given) < 0.0).sum())

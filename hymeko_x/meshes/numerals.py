@@ -5,10 +5,15 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Any
 
+import msgspec
 import numpy as np
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+_MANY = 4096
+"""From so many characters on the fast reader is worth its arrangements."""
+_BLANKS_AS_COMMAS = bytes.maketrans(b" \t\n\v\f\r", b",,,,,,")
 
 
 def numbers_in(text: str | bytes, kind: Any = np.float64) -> NDArray[Any]:
@@ -19,6 +24,28 @@ def numbers_in(text: str | bytes, kind: Any = np.float64) -> NDArray[Any]:
     data = text if isinstance(text, bytes) else text.encode()
     if not data or data.isspace():
         return np.zeros(0, dtype=kind)
+    found = _decimals(data) if len(data) >= _MANY and np.issubdtype(kind, np.floating) else None
+    return _read_by_numpy(data, kind) if found is None else found.astype(kind)
+
+
+def _decimals(data: bytes) -> NDArray[np.float64] | None:
+    """The numbers of a text, read as an array of JSON, which takes a third of numpy's time; None where it is not one (``.5``, ``+1``).
+
+    JSON's ``-0`` is a whole number, which has no sign.
+    """
+    array = b"[%b]" % data.strip().translate(_BLANKS_AS_COMMAS)
+    while b",," in array:
+        array = array.replace(b",,", b",")
+    if b"," in data or b"-0," in array or array.endswith(b"-0]"):
+        return None
+    try:
+        numbers = msgspec.json.decode(array, type=list[float])
+    except msgspec.DecodeError:
+        return None
+    return np.fromiter(numbers, np.float64, len(numbers))
+
+
+def _read_by_numpy(data: bytes, kind: Any) -> NDArray[Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
         try:
