@@ -45,12 +45,17 @@ def unshared(mine: Sequence[Extra], theirs: Sequence[Extra], *identities: Identi
     """
     a, b = list(mine), list(theirs)
     for identity in identities:
-        if not a or not b:
+        if {_place(extra) for extra in a}.isdisjoint(map(_place, b)):
             break
         known, others = ([(identity(extra), extra) for extra in extras] for extras in (a, b))
         both = Counter(key for key, _ in known) & Counter(key for key, _ in others)
         a, b = _without(known, both.copy()), _without(others, both)
     return a, b
+
+
+def _place(extra: Extra) -> Hashable:
+    """What the extras of equal identity have in common: where a format has them."""
+    return extra.format, extra.path
 
 
 def _without(extras: Known, shared: Counter[Hashable]) -> list[Extra]:

@@ -85,7 +85,7 @@ def relevant(
                 alike[key] = _move_alike(before.graph.edges[key], after.graph.edges[key], tolerance)
             if alike[key] and not _is_idle_axis(before, difference):
                 continue
-        if not is_held(difference) or _is_of_robot(difference):
+        if _is_of_robot(difference) or not is_held(difference):
             yield difference
 
 

@@ -37,7 +37,7 @@ def shorten_computed(mechanism: Mechanism, source: Mechanism) -> Mechanism:
     if mechanism.graph is source.graph:
         return mechanism
     vertices, edges = (
-        {key: part for key, part in _changed(parts, before).items() if _shortened(part, ()) is not part}
+        _changed(parts, before)
         for parts, before in ((mechanism.graph.vertices, source.graph.vertices), (mechanism.graph.edges, source.graph.edges))
     )
     if not vertices and not edges:

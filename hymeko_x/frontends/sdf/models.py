@@ -315,7 +315,7 @@ def _make_loop(joint: Id, node: Node, builder: SdfBuilder) -> Id:
 def with_world_link_as_world(mechanism: Mechanism) -> Mechanism:
     """The link that the writer makes for what is on the world is the world again."""
     link = Id("body", words.WORLD_LINK)
-    above = mechanism.parent_joint.get(link)
+    above = mechanism.parent_joint.get(link) if link in mechanism.graph.vertices else None
     if above is None or above.parent != WORLD or above.joint.dofs or mechanism.children.get(link) or above.parent_pose != above.child_pose:
         return mechanism
     return rename(mechanism.replace(without=[above.id]), {link: WORLD})
