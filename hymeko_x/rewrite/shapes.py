@@ -196,7 +196,7 @@ Piece = tuple["Geometry", Pose]
 
 
 def split_shared_shapes(mechanism: Mechanism, _context: Context, *, ending: str = "") -> Mechanism:
-    """A shape that is seen and collides becomes a visual and a collision, whose name has the ending."""
+    """A shape that is seen and collides becomes a visual, and a collision without its appearance, whose name has the ending."""
     shared = [view for view in mechanism.every_shape() if view.shape.role is Role.BOTH]
     if not shared:
         return mechanism
@@ -204,9 +204,10 @@ def split_shared_shapes(mechanism: Mechanism, _context: Context, *, ending: str 
     edges: dict[Id, RobotEdge] = {}
     for view in shared:
         arcs, twin = mechanism.graph.edges[view.id].arcs, names.take("shape", f"{view.body.name}/collision")
-        collision = _shape_as(view.shape, view.shape.geometry, Role.COLLISION)
+        collision = replace(_shape_as(view.shape, view.shape.geometry, Role.COLLISION), rgba=None)
         edges[view.id] = Edge(_shape_as(view.shape, view.shape.geometry, Role.VISUAL), arcs)
-        edges[twin] = Edge(replace(collision, name=view.shape.name and view.shape.name + ending), arcs)
+        plain = tuple([arc for arc in arcs if arc.target != view.material])
+        edges[twin] = Edge(replace(collision, name=view.shape.name and view.shape.name + ending), plain)
     return mechanism.replace(edges=edges)
 
 
