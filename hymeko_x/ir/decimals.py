@@ -19,24 +19,28 @@ _QUAT_DECIMALS = 15  # moves a component by half of PRECISION at most, so that t
 _HALF_ROOT = math.sqrt(0.5)
 
 
-def shortest(value: float, scale: float | None = None) -> float:
-    """The number of the fewest decimals that differs by at most 1e-15 of ``scale``, by default of the number itself."""
-    size = abs(value) if scale is None else scale
-    room = PRECISION * size
-    if not 1e-290 < size < 1e290:  # rounding needs room; also infinity and what is not a number
-        return value
-    if abs(value) <= room:
-        return 0.0
-    decimals = math.ceil(-math.log10(2.0 * room))
-    shorter = round(value, decimals - 1)
-    return shorter if abs(shorter - value) <= room else round(value, decimals)
+def shortest(value: float) -> float:
+    """The number of the fewest decimals that differs by at most 1e-15 of itself."""
+    return shortest_of((value,))[0]
 
 
 def shortest_of(values: Iterable[float], least: float = 0.0) -> tuple[float, ...]:
     """The components of one quantity, each the shortest decimal relative to the largest of them, or to ``least`` if that is larger."""
     found = tuple(values)
     scale = max([*map(abs, found), least])
-    return tuple([shortest(value, scale) for value in found])
+    if not 1e-290 < scale < 1e290:  # rounding needs room; also infinity and what is not a number
+        return found
+    room = PRECISION * scale
+    decimals = math.ceil(-math.log10(2.0 * room))
+    return tuple([_rounded(value, room, decimals) for value in found])
+
+
+def _rounded(value: float, room: float, decimals: int) -> float:
+    """The shorter one of two roundings that differ by at most ``room``."""
+    if abs(value) <= room:
+        return 0.0
+    shorter = round(value, decimals - 1)
+    return shorter if abs(shorter - value) <= room else round(value, decimals)
 
 
 def clean_vector(vector: tuple[float, float, float]) -> tuple[float, float, float]:

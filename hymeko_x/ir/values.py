@@ -326,6 +326,7 @@ def apply(a: Pose, point: Vec3) -> Vec3:
     return add(a.xyz, rotate(a.quat, point))
 
 
+@lru_cache(4096)  # writers ask again for what readers have computed
 def rotate_tensor(quat: Quat, tensor: Tensor) -> Tensor:
     """R I R^T: a symmetric tensor given in turned axes, seen in the axes in which ``quat`` is given."""
     if quat == NO_ROTATION:

@@ -261,7 +261,11 @@ _RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
 
 def complaint(element: Element, rules: tuple[Rule, ...]) -> str | None:
     """What MuJoCo would refuse in this element by these rules; None when it is fine."""
-    return next((found for rule in rules if (found := rule(element)) is not None), None)
+    for rule in rules:
+        found = rule(element)
+        if found is not None:
+            return found
+    return None
 
 
 def rules_of(path: str) -> tuple[Rule, ...]:
