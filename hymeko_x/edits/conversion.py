@@ -15,7 +15,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_assets, with_same_numbers
 from hymeko_x.edits.weights import without_followed
-from hymeko_x.ir.mechanism import WORLD, Id
+from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Body, Mesh, Shape, Texture
@@ -350,7 +350,7 @@ def _is_beside(new: Id, old: Id) -> bool:
 
 def _on_world(robot: Mechanism) -> Iterator[JointView]:
     """The joints that join bodies to the world, or to a body that a format without a world has in its place."""
-    for world in (WORLD, Id("body", WORLD.name)):
+    for world in (WORLD, WORLD_LINK):
         yield from robot.children.get(world, ())
 
 

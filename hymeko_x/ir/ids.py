@@ -22,6 +22,8 @@ class Id(NamedTuple):
 
 
 WORLD = Id("world", "world")
+WORLD_LINK = Id("body", "world")
+"""The link that represents the world in formats without one."""
 ROOT = Id("mechanism", "")
 """The key under which side tables keep what belongs to the mechanism as a whole."""
 

@@ -19,6 +19,7 @@ from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.ids import ROOT as ROOT
 from hymeko_x.ir.ids import WORLD as WORLD
+from hymeko_x.ir.ids import WORLD_LINK as WORLD_LINK
 from hymeko_x.ir.ids import Id as Id
 from hymeko_x.ir.provenance import Provenance as Provenance
 from hymeko_x.ir.values import IDENTITY, Pose

@@ -42,5 +42,6 @@ def _words(found: list[Restored], void: int) -> str:
     values, elements, extras = (sum(numbers) for numbers in zip(*[one[1:] for one in found], strict=True))
     counts = ((values, "value"), (elements, "element"), (extras, "extra"))
     given = [f"{number} {word}{'s' if number > 1 else ''}" for number, word in counts if number]
-    text = f"{', '.join(given) or 'names and notations'} that the file cannot represent are given back"
+    is_one = values + elements + extras == 1
+    text = f"{', '.join(given) or 'names and notations'} that the file cannot represent {'is' if is_one else 'are'} given back"
     return f"{text}; for {void} element{'s' if void > 1 else ''} it no longer applies" if void else text

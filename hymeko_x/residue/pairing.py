@@ -10,10 +10,11 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.fields import layout_of
-from hymeko_x.ir.mechanism import WORLD, Id
+from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id
 from hymeko_x.ir.names import Names
 from hymeko_x.ir.parts import Joint, Material, Mesh, Role, Shape, Texture
 from hymeko_x.ir.values import IDENTITY, Pose
+from hymeko_x.rewrite.roots import RENAMED_LINK, stands_for_world
 from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
@@ -31,7 +32,8 @@ _DIGITS = 7
 def other_names(image: Mechanism, source: Mechanism) -> dict[Id, Id]:
     """The source's id of every element of the image that goes by another one."""
     pairs = _Pairs(image.graph, source.graph)
-    pairs.match_world()
+    is_link, was_link = (WORLD_LINK in robot.roots and stands_for_world(WORLD_LINK, robot) for robot in (image, source))
+    pairs.match_world(is_link=is_link, was_link=was_link)
     pairs.match_ends()  # bodies by the joints that both have, materials and meshes by the shapes
     for with_layers in (False, True):  # then edges by what they connect, and once more what only those lead to
         pairs.match_edges(with_layers=with_layers)
@@ -69,10 +71,22 @@ class _Pairs:
             free = Names((*self.image.vertices, *self.image.edges, *self.source.vertices, *self.source.edges))
             yield from ((key, free.take(*key)) for key in self.image.edges if key in left)
 
-    def match_world(self) -> None:
-        """The link that a format without a world calls so, where the source knows no body of that name."""
+    def match_world(self, *, is_link: bool, was_link: bool) -> None:
+        """The world of the one and the link that represents it in the other; whether there is one in the image, and was in the source.
+
+        A body of the source that is called so, and is no such link, has another name beside the world.
+        """
         if WORLD in self.source.vertices:
-            self.pair(Id("body", WORLD.name), WORLD)
+            if is_link and not was_link and WORLD_LINK in self.source.vertices:
+                self.strange.add(WORLD_LINK)
+                self.missing.add(WORLD_LINK)
+            self.pair(WORLD_LINK, WORLD)
+        elif was_link and WORLD in self.strange and WORLD_LINK in self.missing:
+            self.names[WORLD] = WORLD_LINK
+            self.strange.discard(WORLD)
+            self.missing.discard(WORLD_LINK)
+        if not was_link:
+            self.pair(RENAMED_LINK, WORLD_LINK)
 
     def match_ends(self) -> None:
         """What the arcs of an edge lead to, for the edges that both have."""

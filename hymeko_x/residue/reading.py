@@ -9,7 +9,7 @@ from msgspec import NODEFAULT
 from hymeko_x.compare.leaves import TURN
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.ids import KINDS
-from hymeko_x.ir.mechanism import WORLD, Extra, Id
+from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Extra, Id
 from hymeko_x.ir.parts import EdgePart
 from hymeko_x.ir.provenance import Provenance
 from hymeko_x.ir.types import fits, is_sound
@@ -157,9 +157,11 @@ def _provenance(file: object, format: object, version: object = "") -> Provenanc
 
 
 def _renamed(kind: str, old: str, new: str) -> tuple[Id, Id]:
-    """The old and the new id: of the same kind, but for a body that stands for the world."""
+    """The old and the new id: of the same kind, but for the world and a body that represents it."""
     if kind == WORLD.kind and new != WORLD.name:
         raise ValueError(f"there is no other world '{new}'")
+    if Id(kind, old) == Id(kind, new) == WORLD_LINK:
+        return WORLD, WORLD_LINK
     return Id("body" if kind == WORLD.kind else kind, old), Id(kind, new)
 
 

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from hymeko_x.compare.diff import Difference
 from hymeko_x.ir.graph import Edge
-from hymeko_x.ir.mechanism import WORLD, Id, joint_edge, pose_weight
+from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, joint_edge, pose_weight
 from hymeko_x.ir.names import rename, with_dof_names
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape, World
@@ -47,10 +47,11 @@ def _free_names(image: Mechanism, alignment: Alignment) -> dict[Id, Id]:
 
 
 def _with_world(mechanism: Mechanism) -> Mechanism:
-    """A body that was renamed to the world is the world from now on."""
-    if not isinstance(mechanism.graph.vertices.get(WORLD), Body):
-        return mechanism
-    return mechanism.replace(vertices={WORLD: World()})
+    """A body that was renamed to the world is the world from now on, and a world that was renamed to a link is a link."""
+    vertices = mechanism.graph.vertices
+    other = {WORLD: World()} if isinstance(vertices.get(WORLD), Body) else {}
+    link = {WORLD_LINK: Body()} if isinstance(vertices.get(WORLD_LINK), World) else {}
+    return mechanism.replace(vertices={**other, **link})
 
 
 def alignment_differences(alignment: Alignment) -> Iterator[Difference]:

@@ -43,7 +43,7 @@ def actuate(mechanism: Mechanism, target: str, options: Options, report: Report)
 
 def legalize(mechanism: Mechanism, target: str, report: Report) -> Mechanism:
     """The mechanism rewritten so that the target's backend can print all of it. Idempotent."""
-    context = Context(report)
-    for rule in rules_of(target, native=formats.by_name(target) is formats.native_format(mechanism)):
+    context, row = Context(report), formats.by_name(target)
+    for rule in rules_of(target, native=row.family == mechanism.source.format):
         mechanism = rule(mechanism, context)
     return mechanism

@@ -11,7 +11,7 @@ from hymeko_x.ir.mechanism import joint_edge, mount_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Body, Contact, Frame, Joint, Mount
 from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse
-from hymeko_x.rewrite.roots import is_massless, put_world_link_into_world, stands_for_world, without
+from hymeko_x.rewrite.roots import is_massless, without
 from hymeko_x.rewrite.sites import is_link
 
 if TYPE_CHECKING:
@@ -21,13 +21,6 @@ if TYPE_CHECKING:
 _SHOWN = 4
 Held = dict["Id", tuple["Id", Pose]]
 """For each link that becomes a frame the body that holds it, and its pose there."""
-
-
-def put_world_links_into_world(mechanism: Mechanism, context: Context) -> Mechanism:
-    """A root link called ``world`` without mass is the world; other links of that name stay."""
-    return (
-        put_world_link_into_world(mechanism, context) if any(stands_for_world(root, mechanism) for root in mechanism.roots) else mechanism
-    )
 
 
 def make_dummies_frames(mechanism: Mechanism, context: Context) -> Mechanism:

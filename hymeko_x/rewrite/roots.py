@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import listed
-from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
+from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, Mechanism, joint_edge
 from hymeko_x.ir.names import names_in_use, rename
 from hymeko_x.ir.parts import Body, DofKind, Joint, Plane, Shape, Stance, World
 
@@ -17,28 +17,38 @@ if TYPE_CHECKING:
     from hymeko_x.rewrite.context import Context
 
 
+RENAMED_LINK = Id("body", "world_link")
+"""What a body is called whose author calls it ``world``, which is none."""
+
+
 # ---- for formats with a world ------------------------------------------------------------------------------------------
-
-
-_WORLD_LINK = Id("body", WORLD.name)
 
 
 def put_world_link_into_world(mechanism: Mechanism, context: Context) -> Mechanism:
     """A root link called ``world`` without a mass is the world; any other body of that name is renamed."""
-    body = mechanism.part(_WORLD_LINK, Body)
+    return _with_other_name(put_world_links_into_world(mechanism, context), context)
+
+
+def _with_other_name(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A body called ``world``, which is none, has another name: the world alone has this one."""
+    body = mechanism.part(WORLD_LINK, Body)
     if body is None:
         return mechanism
-    if _WORLD_LINK not in mechanism.parent_joint and is_massless(body):
-        return rename(with_world(mechanism), {_WORLD_LINK: WORLD})
-    new = names_in_use(mechanism).take("body", "world_link")
+    new = names_in_use(mechanism).take(*RENAMED_LINK)
     why = "has a mass" if not is_massless(body) else "is not the root"
     context.report.warn(
         codes.RENAMED,
         f"link 'world' {why}, so it is not the world itself, which alone may have this name; it is written as '{new.name}'",
-        mechanism.origin(_WORLD_LINK),
+        mechanism.origin(WORLD_LINK),
         element=str(new),
     )
-    return rename(mechanism, {_WORLD_LINK: new})
+    return rename(mechanism, {WORLD_LINK: new})
+
+
+def put_world_links_into_world(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """A root link called ``world`` without a mass is the world; other bodies of that name stay."""
+    links = [root for root in mechanism.roots if root not in mechanism.parent_joint and stands_for_world(root, mechanism)]
+    return rename(with_world(mechanism), dict.fromkeys(links, WORLD)) if links else mechanism
 
 
 def report_open_bases(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -75,7 +85,7 @@ def stands_for_world(root: Id, mechanism: Mechanism) -> bool:
     return root.name.partition("#")[0] == WORLD.name and is_massless(mechanism.vertex(root, Body))
 
 
-def make_world_a_link(mechanism: Mechanism, _context: Context) -> Mechanism:
+def make_world_a_link(mechanism: Mechanism, context: Context) -> Mechanism:
     """The world, if anything is attached to it, is a link called ``world`` without mass: the usual way to fix a base.
 
     So is the world of a mechanism without bodies: such formats need a link. A link that stands for the world already needs no other.
@@ -85,9 +95,8 @@ def make_world_a_link(mechanism: Mechanism, _context: Context) -> Mechanism:
     used = any(WORLD in [arc.target for arc in edge.arcs] for edge in mechanism.graph.edges.values())
     if not used and not (there and alone):
         return mechanism.replace(without=[WORLD])
-    link = names_in_use(mechanism).take("body", WORLD.name)
-    mechanism = rename(mechanism, {WORLD: link})
-    return mechanism.replace(vertices={link: Body()})
+    mechanism = rename(put_world_link_into_world(mechanism, context), {WORLD: WORLD_LINK})
+    return mechanism.replace(vertices={WORLD_LINK: Body()})
 
 
 def _without_held_worlds(mechanism: Mechanism) -> Mechanism:
@@ -152,8 +161,7 @@ def join_roots(mechanism: Mechanism, context: Context) -> Mechanism:
     if len(roots) < 2:
         return mechanism
     names = names_in_use(mechanism)
-    world = Id("body", WORLD.name)
-    root = world if world in roots else names.take("body", WORLD.name)
+    root = WORLD_LINK if WORLD_LINK in roots else names.take("body", WORLD.name)
     others = [other for other in roots if other != root]
     edges = {names.take("joint", f"{other.name}_base"): joint_edge(Joint(), root, other) for other in others}
     fixed = listed([f"'{other.name}'" for other in others], 5)

@@ -11,10 +11,10 @@ from hymeko_x.backends.usd.assetinfo import describe_stage, follow_rep_158
 from hymeko_x.diagnostics import counted
 from hymeko_x.ir.parts import Role, Shape
 from hymeko_x.rewrite.densities import weigh_colliders
-from hymeko_x.rewrite.dummies import make_dummies_frames, put_world_links_into_world
+from hymeko_x.rewrite.dummies import make_dummies_frames
 from hymeko_x.rewrite.efforts import limit_efforts_by_actuators
 from hymeko_x.rewrite.inertia import give_every_body_mass
-from hymeko_x.rewrite.roots import leave_scenery_out
+from hymeko_x.rewrite.roots import leave_scenery_out, put_world_links_into_world
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge

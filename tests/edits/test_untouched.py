@@ -187,3 +187,38 @@ def test_two_points_between_which_a_shape_is_move_with_it(change: tuple[str, str
     (tmp_path / "rod.usda").write_text(text)
     hx.update(tmp_path / "rod.xml", tmp_path / "rod.usda")
     assert (tmp_path / "rod.xml").read_text() == ROD.replace(f'fromto="{line[0]}"', f'fromto="{line[1]}"')
+
+
+HELD = """<robot name="r">
+  <link name="world"/>
+  <link name="base">
+    <inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
+  </link>
+  <joint name="held" type="floating"><parent link="world"/><child link="base"/><origin xyz="0 0 1"/></joint>
+</robot>
+"""
+
+
+@pytest.mark.unread("HX105")
+@pytest.mark.parametrize(
+    ("name", "kind", "change"),
+    [
+        ("r.usda", "floating", (r"translate = \(0, 0, 1\)", "translate = (0, 0.5, 1)")),
+        ("r.usda", "fixed", (r"localPos0 = \(0, 0, 1\)", "localPos0 = (0, 0.5, 1)")),
+        ("r.sdf", "floating", ("0 0 1 0 0 0", "0 0.5 1 0 0 0")),
+        ("r.sdf", "fixed", ("0 0 1 0 0 0", "0 0.5 1 0 0 0")),
+        ("r.xml", "floating", ('pos="0 0 1"', 'pos="0 0.5 1"')),
+        ("r.xml", "fixed", ('pos="0 0 1"', 'pos="0 0.5 1"')),
+    ],
+)
+def test_the_place_of_a_base_below_the_link_of_the_world_comes_home(name: str, kind: str, change: tuple[str, str], tmp_path: Path) -> None:
+    held = HELD.replace("floating", kind)
+    text, missing = updated(tmp_path / name, change, held)
+    assert (text, missing) == (held.replace("0 0 1", "0 0.5 1"), [])
+
+
+@pytest.mark.parametrize("name", ["r.usda", "r.sdf", "r.xml"])
+def test_a_link_that_stands_for_the_world_is_no_loss_where_the_world_is(name: str, tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(HELD)
+    report = hx.convert(tmp_path / "r.urdf", tmp_path / name)
+    assert [(loss.element, loss.field) for loss in report.losses] == ([] if name == "r.xml" else [("joint 'held'", "name")])

@@ -17,7 +17,7 @@ from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Report
 from hymeko_x.formats.usd import RESIDUE
 from hymeko_x.frontends import urdf, usd
-from hymeko_x.ir.mechanism import Id, Mechanism
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.parts import Body, Mesh
 from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
@@ -110,26 +110,33 @@ def test_what_a_shape_is_for_is_its_purpose(tmp_path: Path) -> None:
     assert (UsdGeom.Imageable(shown).ComputePurpose(), UsdGeom.Imageable(felt).ComputePurpose()) == ("default", "guide")
 
 
-def test_a_root_link_that_stands_for_the_world_does_not_fall(tmp_path: Path) -> None:
+def test_a_root_link_that_stands_for_the_world_is_no_body(tmp_path: Path) -> None:
     text = """<robot name="r"><link name="world"/><link name="a"/>
       <joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint></robot>"""
     mechanism = urdf.read(Source("r.urdf", text.encode()), Report()).mechanism
     joints = parsed(opened(written(mechanism), tmp_path)).joints
     assert {path: said[:2] for path, said in joints.items()} == {
-        "/r/joints/world_base": ("FixedJoint", ""),
-        "/r/joints/j": ("FixedJoint", "/r/world"),
+        "/r/joints/j": ("FixedJoint", ""),
     }
     assert diff(mechanism, again(mechanism)) == ()
 
 
-def test_without_a_residue_too_the_link_that_stands_for_the_world_is_held(tmp_path: Path) -> None:
+def test_a_body_of_a_stage_that_is_called_world_stays_a_body(tmp_path: Path) -> None:
+    """Of a stage it is a rigid body like any other, which falls."""
+    body = 'def Xform "world" (prepend apiSchemas = ["PhysicsRigidBodyAPI"]) {}'
+    (tmp_path / "r.usda").write_text(f'#usda 1.0\n(\n    defaultPrim = "r"\n)\ndef Xform "r"\n{{\n    {body}\n}}\n')
+    hx.convert(tmp_path / "r.usda", tmp_path / "again.usdc")
+    assert [key.name for key, _ in hx.load(tmp_path / "again.usdc").mechanism.vertices(Body)] == ["world"]
+
+
+def test_without_a_residue_too_the_link_that_stands_for_the_world_comes_back(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(
         """<robot name="r"><link name="world"/><link name="a"/>
       <joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint></robot>"""
     )
     hx.convert(tmp_path / "r.urdf", tmp_path / "r.usda")
     stage = hx.load(tmp_path / "r.usda").mechanism
-    assert [view.joint.dofs for view in stage.joints.values()] == [(), ()]
+    assert [(view.parent, view.joint.dofs) for view in stage.joints.values()] == [(WORLD, ())]
     hx.convert(tmp_path / "r.usda", tmp_path / "back.urdf")
     back = hx.load(tmp_path / "back.urdf").mechanism
     assert ([root.name for root in back.roots], list(back.joints)) == (["world"], [Id("joint", "j")])

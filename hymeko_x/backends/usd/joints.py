@@ -16,7 +16,6 @@ from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop
 from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, unit_quat
 from hymeko_x.rewrite.decimals import clean_pose
-from hymeko_x.rewrite.roots import stands_for_world
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import UsdSheet
@@ -36,16 +35,6 @@ def write_joints(sheet: UsdSheet) -> None:
             write_joint(sheet, view)
         elif view.child in sheet.paths:
             sheet.paths[view.id] = sheet.paths[view.child]
-    for root in sheet.mechanism.roots:
-        if root not in sheet.mechanism.parent_joint and stands_for_world(root, sheet.mechanism):
-            _hold(sheet, root)
-
-
-def _hold(sheet: UsdSheet, root: Id) -> None:
-    """Fix a root that represents the world to it: without a joint UsdPhysics lets it fall."""
-    path = sheet.free_path(sheet.scope("joints"), f"{root.name}_base")
-    prim = sheet.define(path, table.FIXED)
-    point(prim, "physics:body1", sheet.paths[root])
 
 
 def _floats(view: JointView) -> bool:

@@ -1,4 +1,4 @@
-"""The rules that make a mechanism representable in USD: loops, and collision groups that still hold."""
+"""The rules that make a mechanism representable in USD: the world, loops, and collision groups that still hold."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from hymeko_x.rewrite.fragments import mount_sensors_of_fragments
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.loops import close_in_pairs
 from hymeko_x.rewrite.names import make_names_usable
+from hymeko_x.rewrite.roots import put_world_link_into_world
 from hymeko_x.rewrite.shapes import drop_unused_assets
 from hymeko_x.rewrite.transmissions import drive_by_transmissions
 
@@ -59,6 +60,7 @@ def _is_group(extra: Extra) -> bool:
 RULES: tuple[Rule, ...] = (
     mount_sensors_of_fragments,
     make_names_usable,
+    put_world_link_into_world,
     expand_screws,
     close_in_pairs,
     drop_loops_without_bodies,
@@ -68,3 +70,5 @@ RULES: tuple[Rule, ...] = (
     drop_unused_assets,
     report_planes_that_move,
 )
+NATIVE: tuple[Rule, ...] = tuple(rule for rule in RULES if rule is not put_world_link_into_world)
+"""The rules for what came from USD, where a body may be called as the world."""

@@ -102,7 +102,7 @@ def _compare_names(found: Match, a: KinematicModel, b: KinematicModel) -> None:
     spell = speller(a, b)
     for i, j in found.bodies[1:]:
         ours, theirs = a.bodies[i].name, b.bodies[j].name
-        if ours is not None and ours != "world" and (theirs is None or spell(ours) != spell(theirs)):
+        if ours is not None and "world" not in (ours, theirs) and (theirs is None or spell(ours) != spell(theirs)):
             found.find(BODIES, f"{a.body_label(i)} {_renamed(theirs)}")
 
 

@@ -20,6 +20,9 @@ _MOST_CARRIERS = 8
 _SAME_PLACE = 1e-5
 """In m, kg and as matrix entries, summed up: a body of another name that is where the other was, with its mass, has been renamed."""
 
+_WORLD, _WORLD_LINK = "world", "world_link"
+"""What a body may not be called beside the world in most formats, and what it is called there."""
+
 
 # ---- bodies by name --------------------------------------------------------------------------------------------------
 
@@ -57,6 +60,12 @@ def pair_by_name(a: KinematicModel, b: KinematicModel) -> dict[int, int]:
         for spelling in ours.keys() & theirs.keys():
             pairs[ours[spelling]] = theirs[spelling]
             taken.add(theirs[spelling])
+    for name, other in ((_WORLD, _WORLD_LINK), (_WORLD_LINK, _WORLD)):
+        mine = next((k for k, body in enumerate(a.bodies) if body.name == name and k not in pairs), None)
+        partner = next((k for k, body in enumerate(b.bodies) if body.name == other and k not in taken), None)
+        if mine is not None and partner is not None:
+            pairs[mine] = partner
+            taken.add(partner)
     _pair_by_place(a, b, pairs, taken)
     return pairs
 
