@@ -58,7 +58,8 @@ def relevant(
     No loss is: another axis of a ball or a free joint, which has none; another mass or density of a shape without one, on the world or
     on a body whose mass and tensor are given; a centre of mass and a tensor that HyMeKo text leaves to the shapes; other frames of a joint
     that moves its body alike; an effort limit that is what the actuators of the source can exert; a frame that is
-    where the body of its name is; a pose that is a keyframe; a sensor, a camera or a text that is held in a fragment, as ``is_held`` says.
+    where the body of its name is; an extra that holds nothing; a pose that is a keyframe; a sensor, a camera or a text that is held in a
+    fragment, as ``is_held`` says.
     What an author wrote counts, used or not.
     """
     alike: dict[Id, bool] = {}
@@ -70,7 +71,7 @@ def relevant(
     weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
     for difference in found:
         key = difference.element
-        if _is_described_otherwise(difference, before, after):
+        if _is_described_otherwise(difference, before, after) or is_idle(difference):
             continue
         if not difference.field and difference.after is None and key in described:
             continue
@@ -87,6 +88,14 @@ def relevant(
                 continue
         if _is_of_robot(difference) or not is_held(difference):
             yield difference
+
+
+def is_idle(difference: Difference) -> bool:
+    """Whether it is an extra that holds nothing of a robot: an empty group, or the extent of a geometry."""
+    family, gap, _ = difference.field.partition(" ")
+    pattern = next((row.idle_extras for row in formats.FORMATS if row.name == family), "") if gap else ""
+    texts = [text for text in (difference.before, difference.after) if text is not None]
+    return bool(pattern and texts) and all(re.fullmatch(pattern, text) for text in texts)
 
 
 def _is_of_robot(difference: Difference) -> bool:

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from hymeko_x import codes, disk, formats, pipeline, targets
 from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.compare.ledger import TOLERANCE
-from hymeko_x.compare.relevance import relevant
+from hymeko_x.compare.relevance import is_idle, relevant
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_assets, with_same_numbers
@@ -161,7 +161,7 @@ class Conversion:
         left = frozenset(map(_aim, rest))
         for edit in diff(image, edited, _SINGLE):
             is_there = edit.element.kind == "shape" and (numbered.get(edit.element, edit.element), *_aim(edit)[1:]) not in left
-            if _aim(edit) in (self._asked or ()) and not _has_other_forms(edit) and not is_there:
+            if _aim(edit) in (self._asked or ()) and not (_has_other_forms(edit) or is_idle(edit) or is_there):
                 yield self._homes.get(edit.element, edit.element), f"the edit did not arrive: {edit}"
         for edit in rest:
             if edit.element not in touched and _is_value_of_shape(edit) and str(edit) not in known:

@@ -14,6 +14,7 @@ from msgspec.structs import replace
 from hymeko_x import codes, formats, pipeline
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
+from hymeko_x.compare.relevance import is_idle
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.edits.conversion import Conversion, new_assets
 from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
@@ -141,7 +142,7 @@ def _round(original: Source, format: Format, conversion: Conversion, edited: Sou
     derived = (_is_inherited, _is_weight, _is_given_again)
     dropped = [edit for edit in every if (str(edit.element), edit.field) in gone and not any(test(edit) for test in derived)]
     texts = text_with_edits(original, format, before, after, report) if len(dropped) < len(every) else Texts({}, {})
-    lost = tuple(edit for edit in dropped if not _is_hidden_material(edit, after))
+    lost = tuple(edit for edit in dropped if not (_is_hidden_material(edit, after) or is_idle(edit)))
     return _Round(before, texts, beside, lost, conversion.left())
 
 

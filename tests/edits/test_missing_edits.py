@@ -193,3 +193,27 @@ def test_a_painted_visual_of_a_geom_that_is_both_paints_it_and_leaves_its_mass_a
     report = hx.update(tmp_path / "r.xml", tmp_path / "r.urdf").report
     assert [row.message for row in report if row.code.id == "HX118"] == []
     assert (tmp_path / "r.xml").read_text() == text.replace("1 0 0 1", "0 1 0 1")
+
+
+ROD = """<robot name="rod">
+  <link name="rod">
+    <inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
+    <visual><geometry><cylinder radius="0.1" length="0.5"/></geometry></visual>
+  </link>
+</robot>
+"""
+
+
+@pytest.mark.unread("HX105")
+@pytest.mark.parametrize("group", ["", '    def Scope "mine"\n    {\n    }\n\n'])
+def test_what_holds_nothing_in_a_stage_is_no_lost_edit(group: str, tmp_path: Path) -> None:
+    """The extent of a cylinder is that of its old height; a group has nothing in it."""
+    (tmp_path / "rod.urdf").write_text(ROD)
+    hx.convert(tmp_path / "rod.urdf", tmp_path / "rod.usda")
+    stage = (tmp_path / "rod.usda").read_text().replace("height = 0.5", "height = 0.7")
+    if group:
+        stage = stage.replace("0.25)", "0.35)").replace('    def Xform "rod"', f'{group}    def Xform "rod"', 1)
+    (tmp_path / "rod.usda").write_text(stage)
+    report = hx.update(tmp_path / "rod.urdf", tmp_path / "rod.usda").report
+    assert [str(row) for row in report if row.code.id == "HX118"] == []
+    assert (tmp_path / "rod.urdf").read_text() == ROD.replace("0.5", "0.7")
