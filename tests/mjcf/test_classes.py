@@ -168,3 +168,39 @@ def test_a_real_robot_compiles_to_the_same_model(robot: Path, tmp_path: Path, mo
 @pytest.mark.parametrize("robot", FILES, ids=lambda file: file.id, indirect=True)
 def test_every_real_robot_compiles_to_the_same_model(robot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert differences(*models(robot, tmp_path, monkeypatch)) == []
+
+
+BEAM = """<mujoco model="m">
+  <default>
+    <default class="beam">
+      <geom type="box" size="0.2" fromto="0 0 0 0 -2 0" rgba="0.4 0.7 0.6 0.3" contype="0" density="500"/>
+    </default>
+  </default>
+  <worldbody>
+    <body name="a" childclass="beam">
+      <freejoint/>
+      <inertial pos="0 -1 0" mass="1" diaginertia="1 1 1"/>
+      <geom name="g"/>
+      <geom name="h" rgba="1 0 0 1"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX105")
+@pytest.mark.parametrize("place", [0, 1])
+def test_a_box_that_is_wider_than_deep_leaves_a_class_that_gives_two_points(place: int, tmp_path: Path) -> None:
+    """No position undoes the points of a class, and a box between two points is square."""
+    (tmp_path / "a.xml").write_text(BEAM)
+    hx.convert(tmp_path / "a.xml", tmp_path / "a.usda")
+    parts = (tmp_path / "a.usda").read_text().split("(0.4, 0.4, 2)")
+    parts[place : place + 2] = ["(0.4, 0.6, 2)".join(parts[place : place + 2])]
+    (tmp_path / "a.usda").write_text("(0.4, 0.4, 2)".join(parts))
+    hx.update(tmp_path / "a.xml", tmp_path / "a.usda")
+    turned = 'size="0.2 0.3 1" pos="0 -1 0" quat="0.7071067811865476 -0.7071067811865476 0 0"'
+    old, name, rgba = [('<geom name="g"/>', "g", "0.4 0.7 0.6 0.3"), ('<geom name="h" rgba="1 0 0 1"/>', "h", "1 0 0 1")][place]
+    new = f'<geom name="{name}" class="main" type="box" {turned} rgba="{rgba}" density="500" contype="0"/>'
+    assert (tmp_path / "a.xml").read_text() == BEAM.replace(old, new)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "a.xml"))
+    assert (model.geom_size[place].tolist(), model.geom_contype.tolist()) == ([0.2, 0.3, 1.0], [0, 0])

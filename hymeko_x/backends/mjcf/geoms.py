@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.sheet import tag_of
-from hymeko_x.formats.mjcf import CLASSES
+from hymeko_x.formats.mjcf import CLASSES, MAIN
 from hymeko_x.formats.mjcf.notations import GRID as NOTED_GRID
 from hymeko_x.formats.mjcf.notations import attribute, frame_of
 from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, between_its_ends, seen_from
 from hymeko_x.formats.mjcf.roles import role_attributes
 from hymeko_x.ir.graph import Arc
-from hymeko_x.ir.parts import Body, NoShape, Plane
+from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, NoShape, Plane
 from hymeko_x.rewrite.densities import WATER
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.sheet import BodyTag, MjcfSheet
     from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.ir.mechanism import ShapeView
+    from hymeko_x.ir.parts import Geometry
 
 
 def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
@@ -35,6 +36,8 @@ def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     groups: tuple[Group, ...] = FITTED_GEOM if fitted else GEOM
     if frame is not None:
         groups = (seen_from(PLACE, frame.pose), *groups[1:])
+    if "fromto" in base and not fitted and not _has_ends(shape.geometry) and "fromto" not in (main := sheet.base("geom", MAIN)):
+        own_class, kept, base = MAIN, {**_beyond(main, base, groups), **kept}, main  # as no position undoes the two points of a class
     grid = (sheet.mechanism.notation(key, NOTED_GRID) or GRID) if isinstance(shape.geometry, Plane) else None
     mesh = None if view.mesh is None else sheet.reference(Arc(view.mesh))
     place = Place(shape.geometry, view.pose, grid)
@@ -54,6 +57,20 @@ def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     own = {**found, **kept}
     own |= role_attributes(shape.role, {**base, **own}) if sheet.from_mjcf else {}
     body.add(tag_of("geom", {"name": shape.name or None, "class": own_class, **own}, sheet.inside(key), view.body), frame)
+
+
+def _has_ends(geometry: Geometry) -> bool:
+    """Whether two points and one size can give it: it is as wide as it is deep."""
+    match geometry:
+        case Box((x, y, _)) | Ellipsoid((x, y, _)):
+            return x == y
+    return isinstance(geometry, Capsule | Cylinder)
+
+
+def _beyond(main: Mapping[str, str], base: Mapping[str, str], groups: tuple[Group, ...]) -> dict[str, str]:
+    """What a class gives beyond the main one, but for the attributes of these groups."""
+    named = {name for group in groups for name in group.names}
+    return {name: text for name, text in base.items() if name not in named and main.get(name) != text}
 
 
 def _is_of_water(sheet: MjcfSheet, view: ShapeView, base: Mapping[str, str]) -> bool:
