@@ -19,7 +19,7 @@ from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.alike import URI, holds, is_alike, is_moved, without_colour
 from hymeko_x.residue.arcs import with_edited_weights, with_own_ends
 from hymeko_x.residue.landmarks import renamed_since
-from hymeko_x.residue.parts import GEOMETRY, broken, parts_of
+from hymeko_x.residue.parts import GEOMETRY, broken, capsules_of, parts_of
 from hymeko_x.residue.realign import realign, with_new_names, with_old_names
 from hymeko_x.residue.sides import by_kind, moved, with_sides
 from hymeko_x.residue.stand_ins import with_stand_ins
@@ -171,17 +171,23 @@ class _Merge:
     def _edited_shapes(self) -> tuple[set[Id], set[Id]]:
         """Shapes that stand for others which the image cannot represent: those to keep since one of them was edited, and those to withhold.
 
-        Shapes of one name on one body belong together.
+        The parts of a capsule belong together, and else shapes of one name on one body.
         """
+        capsules = capsules_of(self.residue)
+        whole = {key: key for key in capsules.values()}
+
+        def group_of(shape: Element) -> object:
+            return capsules.get(shape.id) or whole.get(shape.id) or _group_of(shape)
+
         stand_ins: dict[object, list[Element]] = defaultdict(list)
         parts = {part.id for others in self._parts.values() for part in others}
         loose = {part.id for key in self._broken for part in self._parts[key]}
         for removal in self.residue.removals:
             if removal.id.kind == "shape" and removal.id not in parts:
-                stand_ins[_group_of(removal)].append(removal)
+                stand_ins[group_of(removal)].append(removal)
         edited = {group for group, members in stand_ins.items() if not all(map(self._is_untouched, members))}
         kept = loose | {removal.id for group in edited for removal in stand_ins[group]}
-        withheld = {added.id for added in self.residue.additions if added.id.kind == "shape" and _group_of(added) in edited}
+        withheld = {added.id for added in self.residue.additions if added.id.kind == "shape" and group_of(added) in edited}
         for key in withheld:
             self._note(key, "is not restored, because what stands for it was edited")
         return kept, withheld

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import pose_weight
-from hymeko_x.ir.parts import Capsule, Shape, Sphere
+from hymeko_x.ir.parts import Capsule, Cylinder, Role, Shape, Sphere
+from hymeko_x.ir.values import apply
 from hymeko_x.residue.alike import is_alike
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
+    from hymeko_x.ir.parts import Geometry
     from hymeko_x.ir.values import Vec3
     from hymeko_x.residue import Element, Residue
 
@@ -22,6 +25,8 @@ GEOMETRY = ("data", "geometry")
 """Where the geometry of a shape stands in its edge."""
 _MARK = "#"
 """Behind it stands the number of a shape among those of its body."""
+_DIGITS = 6
+"""To how many decimals (m) a part of a capsule is where it belongs."""
 _NEAR = 1e-6
 """How far (m) the middle of the parts may be from the first one."""
 
@@ -42,6 +47,42 @@ def parts_of(residue: Residue) -> dict[Id, list[Element]]:
             if ends:
                 found[change.element] = ends
     return found
+
+
+def capsules_of(residue: Residue) -> dict[Id, Id]:
+    """For each cylinder and ball that the image has in the place of a capsule of the source alone, that capsule."""
+    there: dict[object, list[Id]] = defaultdict(list)
+    for key, part in residue.removals:
+        if isinstance(part, Edge) and isinstance(part.data, Shape):
+            there[_where(part.arcs[0].target, part.data.role, part.data.geometry, _place(part))].append(key)
+    found: dict[Id, Id] = {}
+    for key, part in residue.additions:
+        if not (isinstance(part, Edge) and isinstance(part.data, Shape) and isinstance(part.data.geometry, Capsule)):
+            continue
+        parts = [there[place] for place in _places_of_parts(part)]
+        if all(parts):
+            found |= {alike.pop(0): key for alike in parts}
+    return found
+
+
+def _places_of_parts(capsule: RobotEdge) -> list[object]:
+    """Where the cylinder and the balls of a capsule are, for the eye and for contact."""
+    shape, arc = capsule.data, capsule.arcs[0]
+    assert isinstance(shape, Shape)
+    assert isinstance(shape.geometry, Capsule)
+    radius, length = shape.geometry.radius, shape.geometry.length
+    parts: list[tuple[Geometry, float]] = [(Cylinder(radius, length), 0.0), (Sphere(radius), length / 2.0), (Sphere(radius), -length / 2.0)]
+    roles = (Role.VISUAL, Role.COLLISION) if shape.role is Role.BOTH else (shape.role,)
+    pose = pose_weight(arc)
+    return [_where(arc.target, role, geometry, apply(pose, (0.0, 0.0, height))) for role in roles for geometry, height in parts]
+
+
+def _where(body: Id, role: Role, geometry: Geometry, place: Vec3) -> object:
+    """What a part is known by: where it is to the micrometre, and its size."""
+    numbers = (
+        (geometry.radius,) if isinstance(geometry, Sphere) else (geometry.radius, geometry.length) if isinstance(geometry, Cylinder) else ()
+    )
+    return body, role, type(geometry), tuple(round(number, _DIGITS) + 0.0 for number in (*place, *numbers))
 
 
 def _row(key: Id) -> str:

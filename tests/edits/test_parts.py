@@ -126,3 +126,24 @@ def test_a_name_for_a_joint_that_has_none_is_noted(tmp_path: Path) -> None:
     assert found.edits == ()
     note = f"{original}: note[HX118]: the edit did not arrive: joint 'b' is called 'hip'\n  hint: mjcf has no name for it there"
     assert [str(row) for row in found.report] == [note]
+
+
+@pytest.mark.unread("HX101", "HX105")
+@pytest.mark.parametrize("part", ["cylinder", "sphere"])
+@pytest.mark.parametrize("place", [0, 1])
+def test_an_edit_of_one_part_leaves_the_other_capsules_of_the_body(part: str, place: int, tmp_path: Path) -> None:
+    """The geoms are seen and touched, so that each is six shapes of URDF, none of which has a name."""
+    original, there = tmp_path / "leg.xml", tmp_path / "leg.urdf"
+    whole = LEG.replace(' group="3"', "").replace("<joint", '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>\n      <joint')
+    original.write_text(whole)
+    hx.convert(original, there)
+    pieces = re.split(f'({part} radius="0.2")', there.read_text())
+    number = 1 + 2 * place  # of the two cylinders, or the first two of four balls
+    pieces[number] = pieces[number].replace("0.2", "0.25")
+    there.write_text("".join(pieces))
+    hx.update(original, there)
+    before, after = whole.splitlines(), original.read_text().splitlines()
+    kept = [line for line in before if 'size="0.2 ' not in line]
+    assert [line for line in after if line in kept] == kept
+    geoms = [line for line in after if "<geom" in line and line not in kept]
+    assert (len(geoms), sum("0.25" in line for line in geoms)) == (6, 1)
