@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.decimals import clean_quat, shortest, shortest_of
+from hymeko_x.ir.decimals import clean_quat, clean_vector, shortest, shortest_of
 from hymeko_x.ir.values import (
     NO_ROTATION,
     Pose,
@@ -56,6 +56,11 @@ def pose_as_written(xyz: Vec3, written: Written) -> Pose:
         x, y, z = shortest_of(scaled(add(first, second), 0.5), max(map(abs, written.numbers)))
         return Pose((x, y, z), quat_from_direction(add(first, scaled(second, -1.0))), written)
     return Pose(xyz, quat_as_written(written), written)
+
+
+def clean_pose(pose: Pose) -> Pose:
+    """A computed pose without noise; lengths relative to 1 m at least. It has no notation."""
+    return Pose(clean_vector(pose.xyz), unit_quat(clean_quat(pose.quat)))
 
 
 def ends_of(written: Written) -> tuple[Vec3, Vec3]:

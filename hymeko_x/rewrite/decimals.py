@@ -13,7 +13,7 @@ from msgspec import Struct
 from msgspec.json import encode
 from msgspec.structs import replace
 
-from hymeko_x.ir.decimals import clean_quat, clean_vector, shortest, shortest_of
+from hymeko_x.ir.decimals import clean_quat, shortest, shortest_of
 from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.parts import Inertial, Mesh, Subset
 from hymeko_x.ir.values import Pose, unit_quat
@@ -47,11 +47,6 @@ def shorten_computed(mechanism: Mechanism, source: Mechanism) -> Mechanism:
         vertices={key: _shortened(part, known) for key, part in vertices.items()},
         edges={key: _shortened(edge, known) for key, edge in edges.items()},
     )
-
-
-def clean_pose(pose: Pose) -> Pose:
-    """A computed pose without noise; lengths relative to 1 m at least. It has no notation."""
-    return replace(pose, xyz=clean_vector(pose.xyz), quat=unit_quat(clean_quat(pose.quat)), written=None)
 
 
 def _changed(parts: Mapping[Id, Any], before: Mapping[Id, Any]) -> dict[Id, Any]:

@@ -16,7 +16,7 @@ from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Role
 from hymeko_x.ir.values import IDENTITY, compose, inverse
-from hymeko_x.rewrite.decimals import clean_pose
+from hymeko_x.ir.written import clean_pose
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from hymeko_x.ir.kinematics import below, reference_poses
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Frame, Loop
 from hymeko_x.ir.values import IDENTITY, compose, inverse
-from hymeko_x.rewrite.decimals import clean_pose
+from hymeko_x.ir.written import clean_pose
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -15,7 +15,7 @@ from hymeko_x.ir.kinematics import reference_poses
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Mesh
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle
-from hymeko_x.rewrite.decimals import clean_pose
+from hymeko_x.ir.written import clean_pose
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import UsdSheet

@@ -15,7 +15,7 @@ from hymeko_x.ir.decimals import shortest
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop
 from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, unit_quat
-from hymeko_x.rewrite.decimals import clean_pose
+from hymeko_x.ir.written import clean_pose
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import UsdSheet

@@ -14,7 +14,7 @@ from hymeko_x.formats.usd import shapes as gprims
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import MeshShape, Role
 from hymeko_x.ir.values import NO_ROTATION, Pose, compose, quat_inverse
-from hymeko_x.rewrite.decimals import clean_pose
+from hymeko_x.ir.written import clean_pose
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import UsdSheet

@@ -8,7 +8,7 @@ from msgspec import Struct, field
 
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse
-from hymeko_x.rewrite.decimals import clean_pose
+from hymeko_x.ir.written import clean_pose
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id

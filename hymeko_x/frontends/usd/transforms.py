@@ -12,7 +12,7 @@ from pxr import Gf, UsdGeom
 
 from hymeko_x import codes
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, cross, dot, scaled, unit_quat
-from hymeko_x.rewrite.decimals import clean_pose
+from hymeko_x.ir.written import clean_pose
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin, Report
