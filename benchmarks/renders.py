@@ -52,7 +52,6 @@ KNOWN: dict[str, str | tuple[str, ...]] = {
     "actuator/arm21": ("urdf", "xacro", "sdf"),  # the same
     "tendon/pulley": ("urdf", "xacro", "sdf"),  # the same
     "tests/assets/constraints": "sdf",  # loops that start open and hold free bodies: SDF has them as the joints, which are closed
-    "test_data/capsule": ("urdf", "xacro"),  # spheres stand for the ends of a capsule, and MuJoCo draws them with other facets
 }
 """Faults that are known: a part of the path of robots, and the beginnings of the formats in which they differ."""
 
