@@ -14,7 +14,7 @@ from hymeko_x.compare.relevance import is_idle, relevant
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_assets, with_same_numbers
-from hymeko_x.edits.weights import without_followed
+from hymeko_x.edits.weights import with_computed_gains, without_followed
 from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
@@ -83,8 +83,11 @@ class Conversion:
         self.files, self.home = edited.files, home
         self.folder = os.path.dirname(edited.name) or "."
         self._used: Guess | None = None
+        self._first_image: Mechanism | None = None
         self._asked: frozenset[tuple[Id, str, str | None]] | None = None
         self._homes: dict[Id, Id] = {}
+        self.computed: list[Id] = []
+        """The actuators whose gains the conversion computes, and computes otherwise after the edits."""
 
     @property
     def is_known(self) -> bool:
@@ -103,6 +106,10 @@ class Conversion:
         residue = residue_of(mechanism, guess.image)
         self._homes = homes = dict(residue.alignment.names)
         self.edited = with_same_assets(with_same_numbers(self._read, guess.image, self._unnamed_bodies()), guess.image)
+        if self._first_image is None:
+            self._first_image = guess.image
+        sources = {key: mechanism.graph.vertices.get(homes.get(key, key)) for key, _ in self.edited.vertices(Actuator)}
+        self.edited, self.computed = with_computed_gains(self.edited, self._first_image, guess.image, sources)
         if self._asked is None:
             self._asked = frozenset(map(_aim, diff(guess.image, self.edited, TOLERANCE)))
         names = self._renames(guess.image)

@@ -15,7 +15,7 @@ from hymeko_x import codes, formats, pipeline
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import is_idle
-from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
+from hymeko_x.diagnostics import Origin, Refusal, Report, counted, listed, refuse
 from hymeko_x.edits.conversion import Conversion, new_assets
 from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
 from hymeko_x.edits.unnamed import unnamed_bodies, with_same_numbers
@@ -160,6 +160,10 @@ def _report_left(found: _Round, conversion: Conversion, original: Source, format
     unmet = [words for element, words in conversion.unmet(left) if element not in known] if is_changed else [*conversion.lost_colours()]
     missing = [f"the edit did not arrive: {words}" for words in (*found.left.names, *left)]
     _report_missing([*dict.fromkeys([*missing, *unmet])], original, report)
+    if conversion.computed:
+        names = listed([f"'{key.name}'" for key in conversion.computed], 2)
+        message = f"gains of {counted(len(conversion.computed), 'actuator')} follow from masses, and are old in the edited file: {names}"
+        report.note(codes.EDIT_DROPPED, message, Origin(original.name), hint="convert the original again")
     for name in dict.fromkeys([*found.left.made_names, *(conversion.lost_names() if is_changed else ())]):
         hint = f"{format.name} has no name for it there"
         report.note(codes.EDIT_DROPPED, f"the edit did not arrive: {name}", Origin(original.name), hint=hint)

@@ -1,4 +1,4 @@
-"""Inertials that follow from shapes: an edit of a shape, where a file states none, is no edit of its body's mass."""
+"""What follows from edits: inertials of shapes where a file states none, and gains that a conversion computes from masses."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import math
 from typing import TYPE_CHECKING
 
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.parts import Body, Role
+from hymeko_x.ir.parts import Actuator, Body, Role
 from hymeko_x.ir.solids import joined
 from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.densities import Solids
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import Inertial
@@ -37,6 +37,21 @@ def without_followed(edited: Mechanism, image: Mechanism, bare: Iterable[Id]) ->
         if old is not None and new is not None and math.isclose(old, new, rel_tol=_SINGLE):
             followed[key] = before
     return edited.replace(vertices=followed)
+
+
+def with_computed_gains(edited: Mechanism, first: Mechanism, now: Mechanism, own: Mapping[Id, object]) -> tuple[Mechanism, list[Id]]:
+    """The edited robot with the actuators of which no edit changed anything as ORIGINAL is converted to ``now``, and which these are.
+
+    ``first`` is ORIGINAL as it was converted before the edits, and ``own`` what it has itself in place of each actuator: of the same kind
+    it has gains of its own, which no conversion computes.
+    """
+    computed: dict[Id, Actuator] = {}
+    for key, part in edited.vertices(Actuator):
+        found, source = now.part(key, Actuator), own.get(key)
+        is_own = isinstance(source, Actuator) and source.kind == part.kind
+        if found is not None and found != part == first.graph.vertices.get(key) and not is_own:
+            computed[key] = found
+    return edited.replace(vertices=computed), list(computed)
 
 
 def _solid(solids: Solids, body: Id) -> Solid | None:

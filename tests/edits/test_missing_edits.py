@@ -217,3 +217,39 @@ def test_what_holds_nothing_in_a_stage_is_no_lost_edit(group: str, tmp_path: Pat
     report = hx.update(tmp_path / "rod.urdf", tmp_path / "rod.usda").report
     assert [str(row) for row in report if row.code.id == "HX118"] == []
     assert (tmp_path / "rod.urdf").read_text() == ROD.replace("0.5", "0.7")
+
+
+LIFT = """<robot name="lift">
+  <link name="base"><inertial><mass value="4"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+  <link name="arm">
+    <inertial><origin xyz="1 0 0"/><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
+  </link>
+  <joint name="j" type="revolute">
+    <parent link="base"/><child link="arm"/><axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="90" velocity="1"/>
+  </joint>
+  <transmission name="t">
+    <type>transmission_interface/SimpleTransmission</type>
+    <joint name="j"><hardwareInterface>hardware_interface/PositionJointInterface</hardwareInterface></joint>
+    <actuator name="m"/>
+  </transmission>
+</robot>
+"""
+
+
+@pytest.mark.unread("HX101", "HX105", "HX114")
+@pytest.mark.parametrize(
+    ("name", "old", "new"), [("lift.xml", 'mass="1"', 'mass="2"'), ("lift.usda", "physics:mass = 1\n", "physics:mass = 2\n")]
+)
+def test_gains_that_follow_from_an_edited_mass_are_a_note(name: str, old: str, new: str, tmp_path: Path) -> None:
+    (tmp_path / "lift.urdf").write_text(LIFT)
+    hx.convert(tmp_path / "lift.urdf", tmp_path / name)
+    text = (tmp_path / name).read_text()
+    assert text.count(old) == 1
+    (tmp_path / name).write_text(text.replace(old, new))
+    report = hx.update(tmp_path / "lift.urdf", tmp_path / name).report
+    called = "m" if name == "lift.xml" else "j"
+    words = f"gains of 1 actuator follow from masses, and are old in the edited file: '{called}'"
+    assert [(row.severity.name, row.message) for row in report if row.code.id == "HX118"] == [("NOTE", words)]
+    assert (tmp_path / "lift.urdf").read_text() == LIFT.replace('mass value="1"', 'mass value="2"')
+    hx.convert(tmp_path / "lift.urdf", tmp_path / name)
+    assert [row for row in hx.update(tmp_path / "lift.urdf", tmp_path / name).report if row.code.id == "HX118"] == []
