@@ -28,7 +28,7 @@ _MARK = "#"
 _DIGITS = 6
 """To how many decimals (m) a part of a capsule is where it belongs."""
 _NEAR = 1e-6
-"""How far (m) the middle of the parts may be from the first one."""
+"""How far (m) the parts of one capsule may be from where they belong."""
 
 
 def parts_of(residue: Residue) -> dict[Id, list[Element]]:
@@ -96,7 +96,7 @@ def _are_ends(capsule: Capsule, *balls: Element) -> bool:
     edges = [ball.part for ball in balls if isinstance(ball.part, Edge)]
     sizes = [edge.data.geometry.radius for edge in edges]  # type: ignore[union-attr]
     apart = math.dist(*(_place(edge) for edge in edges))
-    return all(is_alike(size, capsule.radius) for size in sizes) and is_alike(apart, capsule.length)
+    return all(is_alike(size, capsule.radius) for size in sizes) and math.isclose(apart, capsule.length, abs_tol=_NEAR)
 
 
 def broken(image: Mechanism, parts: Mapping[Id, Sequence[Element]]) -> set[Id]:

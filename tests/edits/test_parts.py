@@ -147,3 +147,33 @@ def test_an_edit_of_one_part_leaves_the_other_capsules_of_the_body(part: str, pl
     assert [line for line in after if line in kept] == kept
     geoms = [line for line in after if "<geom" in line and line not in kept]
     assert (len(geoms), sum("0.25" in line for line in geoms)) == (6, 1)
+
+
+CROSSED = """<mujoco model="finger">
+  <worldbody>
+    <body name="finger">
+      <joint name="knuckle"/>
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      <geom type="capsule" size="0.007" fromto="0.009 0.006 0.0875 -0.009 0.009 0.0875" group="3"/>
+      <geom type="capsule" size="0.007" fromto="0.009 0.009 0.0875 -0.009 0.006 0.0875" group="3"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101", "HX105")
+@pytest.mark.parametrize("number", range(4))
+def test_balls_whose_distance_is_rounded_are_those_of_their_capsule(number: int, tmp_path: Path) -> None:
+    """The length of a capsule, and the distance of its ends as they are written, differ in the last digit."""
+    original, there = tmp_path / "finger.xml", tmp_path / "finger.urdf"
+    original.write_text(CROSSED)
+    hx.convert(original, there)
+    pieces = there.read_text().split('sphere radius="0.007"')
+    pieces[number : number + 2] = ['sphere radius="0.05"'.join(pieces[number : number + 2])]
+    there.write_text('sphere radius="0.007"'.join(pieces))
+    hx.update(original, there)
+    model = mujoco.MjModel.from_xml_path(str(original))
+    kinds = [mujoco.mjtGeom(kind).name for kind in model.geom_type]
+    assert sorted(kinds) == ["mjGEOM_CAPSULE", "mjGEOM_CYLINDER", "mjGEOM_SPHERE", "mjGEOM_SPHERE"]
+    assert sorted(model.geom_size[:, 0]) == [0.007, 0.007, 0.007, 0.05]
