@@ -190,8 +190,10 @@ class Conversion:
     def lost_names(self) -> list[str]:
         """The names in EDITED of shapes for which ORIGINAL has none, as where one shape of that name became several, in words."""
         assert self._used is not None
-        found = diff(self._used.image, self.edited, TOLERANCE)
-        return [f"{edit.element} is called {edit.after}" for edit in found if _is_lost_name(edit)]
+        numbered = reordered_shapes(self.edited, self._used.image)
+        back = {new: old for old, new in numbered.items()}
+        found = diff(self._used.image, rename(self.edited, numbered), TOLERANCE)
+        return [f"{back.get(edit.element, edit.element)} is called {edit.after}" for edit in found if _is_lost_name(edit)]
 
     def _is_made(self, new: Id, old: Id) -> bool:
         """Whether a name is one that a format made: of an element without one, or of one beside a link of its name."""

@@ -17,7 +17,8 @@ from hymeko_x.diagnostics import Origin, Refusal, Report, listed
 from hymeko_x.edits.merging import merged
 from hymeko_x.edits.overrides import with_overrides
 from hymeko_x.edits.splicing import Lines
-from hymeko_x.residue.pairing import other_names
+from hymeko_x.ir.names import rename
+from hymeko_x.residue.pairing import other_names, reordered_shapes
 from hymeko_x.rewrite import Options, legalize
 from hymeko_x.source import Source
 from hymeko_x.xml.unread import COMMENT
@@ -172,12 +173,16 @@ class _Attempt:
         return {self.own.files[name].path: data for name, data in merged(self.own, self.before, self.after, places).items()}
 
     def wrong(self, files: Mapping[str, bytes]) -> frozenset[Id] | None:
-        """The elements that are not what they should be; None when all are, and ``_UNREADABLE`` where the text cannot be read."""
+        """The elements that are not what they should be; None when all are, and ``_UNREADABLE`` where the text cannot be read.
+
+        The author's text may have the shapes of a body in another order than a print.
+        """
         main = files.get(self.source.name, self.source.data)
         edited = replace(self.source, data=main, files=EditedFiles(self.source.files, files))
         report = Report()
         try:
             found = pipeline.read_file(edited, self.format, report).mechanism
+            found = rename(found, reordered_shapes(found, self.goal))
         except Refusal:
             return _UNREADABLE
         if len(report.errors(0)) > self.errors:

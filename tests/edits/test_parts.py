@@ -177,3 +177,24 @@ def test_balls_whose_distance_is_rounded_are_those_of_their_capsule(number: int,
     kinds = [mujoco.mjtGeom(kind).name for kind in model.geom_type]
     assert sorted(kinds) == ["mjGEOM_CAPSULE", "mjGEOM_CYLINDER", "mjGEOM_SPHERE", "mjGEOM_SPHERE"]
     assert sorted(model.geom_size[:, 0]) == [0.007, 0.007, 0.007, 0.05]
+
+
+@pytest.mark.unread("HX101", "HX102", "HX105")
+def test_the_parts_of_a_named_capsule_stand_where_it_stood(tmp_path: Path) -> None:
+    """A print has them in another order, which is no reason to print the whole text anew; the other geoms are called as they were."""
+    original, there = tmp_path / "leg.xml", tmp_path / "leg.urdf"
+    geoms = ('"thigh" type="capsule" size="0.3 0.5"', '"shin" type="capsule" size="0.2 0.5"', '"foot" type="box" size="1 1 1"')
+    lines = [f"      <geom name={geom}/>\n" for geom in geoms]
+    whole = LEG[: LEG.index("      <geom")] + "".join(lines) + LEG[LEG.index("    </body>") :]
+    whole = whole.replace("<joint", '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>\n      <joint')
+    original.write_text(whole)
+    hx.convert(original, there)
+    there.write_text(there.read_text().replace('cylinder radius="0.2"', 'cylinder radius="0.25"', 1))
+    report = hx.update(original, there).report
+    before, after = whole.splitlines(), original.read_text().splitlines()
+    kept = [line for line in before if "shin" not in line]
+    assert [line for line in after if line in kept] == kept
+    assert len(after) == len(before) + 5
+    assert '      <geom name="shin" type="cylinder" size="0.25 0.5"' in original.read_text()
+    called = [row.message.rpartition(" ")[2] for row in report if row.code.id == "HX118"]
+    assert called == ["'shin'"] * len(called)
