@@ -10,7 +10,7 @@ from hymeko_x.formats.usd.contacts import BY_GROUPS, GROUPED
 from hymeko_x.ir.parts import Contact, Role
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import UsdSheet
+    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
 
 _BINDING = "material:binding:physics"
 
@@ -34,25 +34,25 @@ def write_contacts(sheet: UsdSheet) -> None:
 
 def write_frictions(sheet: UsdSheet) -> None:
     """One physics material for all colliders of one friction; those that had a material of their own keep that."""
-    materials: dict[tuple[float, ...], Any] = {}
+    users: dict[tuple[float, ...], list[Prim]] = {}
     for view in sheet.mechanism.every_shape():
         extras = sheet.mechanism.extras.get(view.id, ())
         is_bound = any(extra.format == words.FORMAT and _BINDING in extra.text for extra in extras)
-        if not view.shape.friction or view.shape.role is Role.VISUAL or is_bound or view.id not in sheet.paths:
-            continue
-        if view.shape.friction not in materials:
-            materials[view.shape.friction] = _write_material(sheet, view.shape.friction)
-        spec = sheet.prims[sheet.paths[view.id]]
-        apply(spec, "MaterialBindingAPI")
-        point(spec, _BINDING, materials[view.shape.friction])
+        if view.shape.friction and view.shape.role is not Role.VISUAL and not is_bound and view.id in sheet.paths:
+            users.setdefault(view.shape.friction, []).append(sheet.prims[sheet.paths[view.id]])
+    for friction, specs in users.items():
+        material = _write_material(sheet, friction, "friction" if len(users) == 1 else f"friction_{friction[0]:g}")
+        for spec in specs:
+            apply(spec, "MaterialBindingAPI")
+            point(spec, _BINDING, material)
 
 
-def _write_material(sheet: UsdSheet, friction: tuple[float, ...]) -> Any:
+def _write_material(sheet: UsdSheet, friction: tuple[float, ...], name: str) -> Any:
     """Sliding friction for UsdPhysics, torsional and rolling friction for MuJoCo and Newton."""
     scope = sheet.scope("frictions")
     put(sheet.prims[scope], f"{words.PREFIX}scope", T.Bool, True)
     sheet.group_paths.discard(scope)
-    spec = sheet.define(sheet.free_path(scope, "friction"), "Material")
+    spec = sheet.define(sheet.free_path(scope, name), "Material")
     apply(spec, "PhysicsMaterialAPI")
     put(spec, "physics:staticFriction", T.Float, friction[0])
     put(spec, "physics:dynamicFriction", T.Float, friction[0])

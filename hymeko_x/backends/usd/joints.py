@@ -14,7 +14,7 @@ from hymeko_x.formats.usd import joints as table
 from hymeko_x.ir.decimals import shortest
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop
-from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, unit_quat
+from hymeko_x.ir.values import IDENTITY, ZERO, Pose, X, add, compose, quat_from_z, quat_inverse, quat_product, scaled, unit_quat
 from hymeko_x.ir.written import clean_pose
 
 if TYPE_CHECKING:
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 _TYPES = {kind: name for name, kind in table.DOFS.items()}
 _TOKENS = {axis: token for token, axis in table.AXES.items()}
+_HALF_TURNS = {"X": (0.0, 0.0, 0.0, 1.0), "Y": (0.0, 1.0, 0.0, 0.0), "Z": (0.0, 1.0, 0.0, 0.0)}
+"""For each token a rotation that turns its axis round."""
+_OPPOSITE = {add(ZERO, scaled(axis, -1.0)): token for token, axis in table.AXES.items()}
 _LOOPS = {"weld": table.FIXED, "connect": _TYPES[DofKind.BALL], "distance": table.DISTANCE}
 
 
@@ -134,9 +137,12 @@ def _write_end(sheet: UsdSheet, spec: Any, side: int, body: Id, key: Id) -> None
 
 
 def _turn(dof: Dof) -> tuple[Quat, str]:
-    """The rotation from the token's axis to the dof's, and the token."""
+    """The rotation from the token's axis to the dof's, and the token; half a turn where the axis points the other way."""
     if dof.axis in _TOKENS:
         return IDENTITY.quat, _TOKENS[dof.axis]
+    if dof.axis in _OPPOSITE:
+        token = _OPPOSITE[dof.axis]
+        return _HALF_TURNS[token], token
     return quat_between_x_and(dof.axis), "X"
 
 

@@ -106,6 +106,7 @@ def _write_looks(sheet: UsdSheet, spec: Any, view: ShapeView) -> None:
     rgba = view.shape.rgba
     if rgba is not None:
         put(spec, "primvars:displayColor", T.Color3fArray, Vt.Vec3fArray([Gf.Vec3f(*rgba[:3])]))
-        put(spec, "primvars:displayOpacity", T.FloatArray, Vt.FloatArray([rgba[3]]))
+        if rgba[3] != 1.0:
+            put(spec, "primvars:displayOpacity", T.FloatArray, Vt.FloatArray([rgba[3]]))
     if view.material is not None and view.material in sheet.paths:
         bind(sheet, spec, view.material)

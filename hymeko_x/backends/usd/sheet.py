@@ -18,6 +18,7 @@ from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import DofKind
+from hymeko_x.ir.values import IDENTITY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -189,8 +190,10 @@ class UsdSheet(Struct):
         return prim
 
     def set_pose(self, prim: Prim, pose: Pose, scale: Vec3 | None = None, *, on: Id) -> None:
-        """Put a prim at a pose in a body's rigid frame, whatever scale the body's prim has."""
-        transform(prim, pose, scale, within=self.body_scales.get(on))
+        """Put a prim at a pose in a body's rigid frame, whatever scale the body's prim has; one in that frame has no ops."""
+        within = self.body_scales.get(on)
+        if pose != IDENTITY or scale is not None or within is not None:
+            transform(prim, pose, scale, within=within)
 
     def in_prim_space(self, body: Id, point: Vec3) -> Vec3:
         """A point of a body in m, in the scaled space of its prim."""
