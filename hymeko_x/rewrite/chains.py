@@ -46,6 +46,8 @@ class _Chains(Struct):
     moved: dict[tuple[Id, int], tuple[Id, str]]
     parts: dict[Id, list[tuple[Dof, list[Id]]]]
     """The old dofs of each joint, each with the joints that it has become."""
+    order: dict[Id, list[Id]]
+    """The joints and links that each joint has become, from the parent on."""
 
 
 def chain_dofs(
@@ -57,7 +59,7 @@ def chain_dofs(
     """
     if not chained:
         return mechanism
-    chains = _Chains(names_in_use(mechanism), {}, {}, {}, {})
+    chains = _Chains(names_in_use(mechanism), {}, {}, {}, {}, {})
     for view in chained:
         count = _add_chain(view, chains, keeps_balls=keeps_balls, poses_children=poses_children)
         if count:
@@ -65,7 +67,9 @@ def chain_dofs(
             context.report.note(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
     edges = edges_to_moved_dofs(mechanism, chains.moved) | _stances(mechanism, chains.parts) | chains.edges
     old = {view.id for view in chained}
-    return mechanism.replace(vertices=chains.vertices, edges=edges, without=old - set(chains.edges))
+    changed = mechanism.replace(vertices=chains.vertices, edges=edges, without=old - set(chains.edges))
+    layout = tuple([key for old in mechanism.layout for key in chains.order.get(old, (old,))])
+    return replace(changed, layout=layout)
 
 
 def _add_chain(view: JointView, chains: _Chains, *, keeps_balls: bool, poses_children: bool) -> int:
@@ -76,22 +80,29 @@ def _add_chain(view: JointView, chains: _Chains, *, keeps_balls: bool, poses_chi
         chains.edges[view.id] = joint_edge(Joint(), view.parent, view.child, offset)
         return 0
     parent = view.parent
-    count = len(steps) - (offset == IDENTITY)
     keys: list[list[Id]] = [[] for _ in view.joint.dofs]
     chains.parts[view.id] = list(zip(view.joint.dofs, keys, strict=True))
+    order = chains.order[view.id] = []
     for place, step in enumerate(steps):
         last = place == len(steps) - 1
-        body = view.child if last and offset == IDENTITY else chains.names.take("body", f"{view.child.name}_carrier")
-        if body != view.child:
-            chains.vertices[body] = Body()
         key = _joint_name(view, step, last, chains)
         chains.moved[view.id, step.number] = (key, "")
         keys[step.number].append(key)
+        body = view.child if last and offset == IDENTITY else _carrier(view, key, last, chains)
         chains.edges[key] = joint_edge(Joint((step.dof,)), parent, body, step.pose, beside if last else IDENTITY)
+        order += [key] if body == view.child else [key, body]
         parent = body
     if offset != IDENTITY:
-        chains.edges[chains.names.take("joint", f"{view.id.name}_frame")] = joint_edge(Joint(), parent, view.child, offset)
-    return count
+        order.append(frame := chains.names.take("joint", f"{view.id.name}_frame"))
+        chains.edges[frame] = joint_edge(Joint(), parent, view.child, offset)
+    return len(steps) - (offset == IDENTITY)
+
+
+def _carrier(view: JointView, moving: Id, last: bool, chains: _Chains) -> Id:
+    """A new link without mass that a joint moves: called after the joint, the last one of a chain after the child that it carries."""
+    body = chains.names.take("body", f"{view.child.name}_carrier" if last else f"{moving.name}_link")
+    chains.vertices[body] = Body()
+    return body
 
 
 def _joint_name(view: JointView, step: _Step, last: bool, chains: _Chains) -> Id:
@@ -171,5 +182,5 @@ def _moved_by(dof: Dof, coordinate: float) -> Pose:
     if not coordinate:
         return IDENTITY
     if dof.kind is DofKind.SLIDE:
-        return Pose(scaled(dof.axis, coordinate))
+        return Pose(add(ZERO, scaled(dof.axis, coordinate)))  # a sum has no negative zeros
     return Pose(ZERO, quat_about(dof.axis, coordinate)) if dof.kind is DofKind.HINGE else IDENTITY

@@ -192,7 +192,11 @@ _THICKNESS = 1e-3
 FACETS = (40, 24)
 """Facets of a sphere around its axis and along it. So drawn, a capsule differs from a cylinder and two spheres in 0.4 % of its picture."""
 
-Piece = tuple["Geometry", Pose]
+ENDS = ("_top", "_bottom")
+"""Behind the name of a capsule that of the balls at its ends."""
+
+Piece = tuple[str, "Geometry", Pose]
+"""What stands behind the name of the shape, the geometry, and where it is in the frame of the shape."""
 
 
 def split_shared_shapes(mechanism: Mechanism, _context: Context, *, ending: str = "") -> Mechanism:
@@ -205,8 +209,8 @@ def split_shared_shapes(mechanism: Mechanism, _context: Context, *, ending: str 
     for view in shared:
         arcs, twin = mechanism.graph.edges[view.id].arcs, names.take("shape", f"{view.body.name}/collision")
         collision = replace(_shape_as(view.shape, view.shape.geometry, Role.COLLISION), rgba=None)
-        edges[view.id] = Edge(_shape_as(view.shape, view.shape.geometry, Role.VISUAL), arcs)
         plain = tuple([arc for arc in arcs if arc.target != view.material])
+        edges[view.id] = Edge(_shape_as(view.shape, view.shape.geometry, Role.VISUAL), arcs)
         edges[twin] = Edge(replace(collision, name=view.shape.name and view.shape.name + ending), plain)
     return mechanism.replace(edges=edges)
 
@@ -235,7 +239,7 @@ def approximate_shapes(mechanism: Mechanism, context: Context, kinds: tuple[type
         geometry = view.shape.geometry
         if isinstance(geometry, Ellipsoid):
             meshes[names.take("mesh", f"{view.body.name}_ellipsoid")] = Mesh(None, geometry.radii, None, *_unit_sphere())
-            edges[view.id] = _in_place(view, MeshShape(), view.pose, next(reversed(meshes)))
+            edges[view.id] = _in_place(view, view.shape.name, MeshShape(), view.pose, next(reversed(meshes)))
         else:
             edges |= _pieces(view, names)
         kind = type(geometry).__name__.lower()
@@ -249,27 +253,29 @@ _INSTEAD = {"capsule": "a cylinder and two spheres", "plane": "a thin box", "ell
 
 
 def _pieces(view: ShapeView, names: Names) -> dict[Id, RobotEdge]:
-    """The shapes that stand for a capsule or a plane; the first one keeps the id."""
+    """The shapes that stand for a capsule or a plane; the first one keeps the id and the name."""
     match view.shape.geometry:
         case Capsule(radius, length):
-            ends = [(Sphere(radius), Pose((0.0, 0.0, z))) for z in (length / 2.0, -length / 2.0)]
-            pieces: list[Piece] = [(Cylinder(radius, length), Pose()), *ends]
+            ends = [(end, Sphere(radius), Pose((0.0, 0.0, z))) for end, z in zip(ENDS, (length / 2.0, -length / 2.0), strict=True)]
+            pieces: list[Piece] = [("", Cylinder(radius, length), Pose()), *ends]
         case Plane((x, y)):
             size = (2.0 * x or PLANE_SIZE, 2.0 * y or PLANE_SIZE, _THICKNESS)
-            pieces = [(Box(size), Pose((0.0, 0.0, -_THICKNESS / 2.0)))]
+            pieces = [("", Box(size), Pose((0.0, 0.0, -_THICKNESS / 2.0)))]
         case _:
             pieces = []
     found: dict[Id, RobotEdge] = {}
     role = view.shape.role
-    for geometry, pose in pieces:
+    for end, geometry, pose in pieces:
         key = view.id if not found else names.take("shape", f"{view.body.name}/{'shape' if role is Role.BOTH else role.value}")
         place = compose(view.pose, pose)
-        found[key] = _in_place(view, geometry, Pose(place.xyz) if isinstance(geometry, Sphere) else place, None)
+        name = view.shape.name and view.shape.name + end
+        found[key] = _in_place(view, name, geometry, Pose(place.xyz) if isinstance(geometry, Sphere) else place, None)
     return found
 
 
-def _in_place(view: ShapeView, geometry: Geometry, pose: Pose, mesh: Id | None) -> RobotEdge:
-    return shape_edge(_shape_as(view.shape, geometry, view.shape.role), view.body, pose, mesh, view.material)
+def _in_place(view: ShapeView, name: str | None, geometry: Geometry, pose: Pose, mesh: Id | None) -> RobotEdge:
+    shape = replace(_shape_as(view.shape, geometry, view.shape.role), name=name)
+    return shape_edge(shape, view.body, pose, mesh, view.material)
 
 
 def _shape_as(shape: Shape, geometry: Geometry, role: Role) -> Shape:
