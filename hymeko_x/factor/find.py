@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Run = tuple[int, int]
 """The numbers of the first and the last form of a run of siblings."""
 
-_NAME = 7
+NAME = 7
 """The assumed length of a name that is not chosen yet."""
 _WORK_PER_TEXT = 4
 _LEAST_WORK = 200_000
@@ -46,7 +46,7 @@ class Family(Struct, frozen=True):
 
 def families(flat: Flat, dialect: Dialect) -> list[Family]:
     """The families that a macro makes shorter, the best first."""
-    bounds = {runs: _bound(runs, flat) for runs in _candidates(flat, dialect) if len(runs) > 1}
+    bounds = {runs: _bound(runs, flat) for runs in _candidates(flat, dialect) if len(runs) > 1 and not _is_fragment(runs[0], flat, dialect)}
     candidates = sorted((runs for runs, bound in bounds.items() if bound >= dialect.least), key=lambda runs: (-bounds[runs], runs))
     work = max(_LEAST_WORK, _WORK_PER_TEXT * len(flat.texts))
     found: list[Family] = []
@@ -58,6 +58,16 @@ def families(flat: Flat, dialect: Dialect) -> list[Family]:
         if family.saving >= dialect.least:
             found.append(family)
     return sorted(found, key=lambda family: (-family.saving, family.runs))
+
+
+def _is_fragment(run: Run, flat: Flat, dialect: Dialect) -> bool:
+    """Whether a run has nothing but forms that mean nothing without the one around them."""
+    number = run[0]
+    while number <= run[1]:
+        if flat.forms[number].tag not in dialect.fragments:
+            return False
+        number = flat.end[number]
+    return True
 
 
 def _bound(runs: tuple[Run, ...], flat: Flat) -> int:
@@ -87,15 +97,20 @@ def _saving(runs: tuple[Run, ...], columns: list[Vector], unified: Unified, flat
     for column, text in zip(columns, unified.texts, strict=True):
         if text is not column[0]:
             body += _length(text, flat) - flat.length(column[0])
-    after = body + dialect.macro + _NAME + len(runs) * (dialect.call + _NAME)
+    after = body + dialect.macro + NAME + len(runs) * (dialect.call + NAME)
     if len(unified.parameters) > _MOST_PARAMETERS:
         return 0
     for values in unified.parameters:
         default, uses = Counter(values).most_common(1)[0]
-        is_default = uses > 1 and isinstance(default, str)
-        after += dialect.parameter + _NAME + (dialect.default + flat.length(default) if is_default else 0)
-        after += sum([dialect.argument + _NAME + flat.length(value) for value in values if not is_default or value != default])
+        is_default = is_usual(uses, len(values)) and isinstance(default, str)
+        after += dialect.parameter + NAME + (dialect.default + flat.length(default) if is_default else 0)
+        after += sum([dialect.argument + NAME + flat.length(value) for value in values if not is_default or value != default])
     return before - after
+
+
+def is_usual(uses: int, count: int) -> bool:
+    """Whether a value that is used so often among so many is a default: by half of them."""
+    return uses > 1 and 2 * uses >= count
 
 
 def _length(text: object, flat: Flat) -> int:
@@ -103,7 +118,7 @@ def _length(text: object, flat: Flat) -> int:
     if isinstance(text, str):
         return flat.length(text)
     assert isinstance(text, tuple)
-    return sum([flat.length(piece) if isinstance(piece, str) else flat.length_of_hole(piece) + _NAME - 1 for piece in text])
+    return sum([flat.length(piece) if isinstance(piece, str) else flat.length_of_hole(piece) + NAME - 1 for piece in text])
 
 
 # ---- candidates ----------------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from hymeko_x.factor.find import is_usual
 from hymeko_x.factor.flat import every_form, to_items
 from hymeko_x.factor.forms import Call, Element, Factored, Hole, Macro, Parameter, Value, joined
 from hymeko_x.factor.macros import free_name, identifier
@@ -30,11 +31,12 @@ def finish(workspace: Workspace, dialect: Dialect) -> Factored:
 
 
 def _parameters(draft: OpenMacro, calls: list[Form], dialect: Dialect) -> tuple[Parameter, ...]:
-    """The parameters, with the most common value as default where that is shorter."""
+    """The parameters, with the most common value as default where half of the calls have it, and that is shorter."""
     found = []
     for place, name in enumerate(draft.parameters):
         values = Counter(call.texts[place] for call in calls)
-        texts = [(text, uses) for text, uses in values.items() if uses > 1 and isinstance(text, str) and dialect.can_be_default(text)]
+        usual = [(text, uses) for text, uses in values.items() if isinstance(text, str) and is_usual(uses, len(calls))]
+        texts = [(text, uses) for text, uses in usual if dialect.can_be_default(text) and (not text or dialect.has_default(name))]
         best = max(texts, key=lambda item: item[1], default=("", 0))
         saved = best[1] * (dialect.argument + len(name) + len(best[0])) - dialect.default - len(best[0])
         found.append(Parameter(name, best[0] if best[1] > 1 and saved > 0 else None))

@@ -7,12 +7,14 @@ of it stands for the run with the holes filled. All of it is immutable and knows
 from __future__ import annotations
 
 import re
+from string import digits
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 
 class Hole(NamedTuple):
@@ -173,7 +175,9 @@ class Dialect(Struct, frozen=True):
     may take; return ``(text,)`` where only the whole text can be one. ``leaf_name`` proposes a parameter's name from
     tag and leaf. ``taken`` are reserved names. ``name`` is the leaf that names a form. ``can_be_default``
     tells whether a text can be a default, ``signs`` whether the dialect can write a number with the sign of a parameter,
-    ``values`` whether it has named values, and ``can_be_value`` which texts can be one.
+    ``values`` whether it has named values, and ``can_be_value`` which texts can be one. A parameter called as in
+    ``without_default`` has none. Forms with the tags ``fragments`` are no macro by themselves. ``components`` are the names of
+    the numbers of a list, by the name of a parameter for the list.
     """
 
     element: int = 3
@@ -196,3 +200,10 @@ class Dialect(Struct, frozen=True):
     signs: bool = True
     values: bool = False
     can_be_value: Callable[[str], bool] = bool
+    without_default: frozenset[str] = frozenset()
+    fragments: frozenset[str] = frozenset()
+    components: Mapping[str, tuple[str, ...]] = MappingProxyType({})
+
+    def has_default(self, parameter: str) -> bool:
+        """Whether a parameter of this name may have a default, which is not empty."""
+        return parameter.rstrip(digits) not in self.without_default

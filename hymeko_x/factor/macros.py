@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from hymeko_x.factor.find import family_of
+from hymeko_x.factor.find import NAME, family_of, is_usual
 from hymeko_x.factor.flat import Form, OpenMacro
 from hymeko_x.factor.forms import Hole, Signed
 from hymeko_x.factor.words import limb_of_most
@@ -91,17 +92,17 @@ def _define(family: Family, flat: Flat, workspace: Workspace, dialect: Dialect, 
     namer = Namer(family, flat, dialect, workspace)
     names = namer.parameters()
     body = _body(family.runs[0], [_named(text, names) for text in family.unified.texts], flat)
-    usual = tuple([_usual(values) for values in family.unified.parameters])
+    usual = tuple([_usual(name, values, dialect) for name, values in zip(names, family.unified.parameters, strict=True)])
     draft = OpenMacro(namer.macro(), names, usual, body)
     workspace.macros[draft.name] = draft
     for place, (first, _) in enumerate(family.runs):
         calls[first] = Form(draft.name, names, tuple([values[place] for values in family.unified.parameters]), is_call=True)
 
 
-def _usual(values: tuple[Text, ...]) -> Text | None:
-    """The value that most instances give for a parameter, and more than one; None if there is no such text."""
+def _usual(name: str, values: tuple[Text, ...], dialect: Dialect) -> Text | None:
+    """The value that half of the instances give for a parameter; None if there is no such text, or the parameter has no default."""
     text, uses = Counter(values).most_common(1)[0]
-    return text if uses > 1 else None
+    return text if is_usual(uses, len(values)) and (not text or dialect.has_default(name)) else None
 
 
 def _named(text: Text, names: tuple[str, ...]) -> Text:
@@ -197,11 +198,17 @@ class Namer:
         if leaf == self._dialect.name and form is self._forms[0]:
             return ["name"]
         wish = leaf if form.is_call else self._dialect.leaf_name(form.tag, leaf)
+        part = self._dialect.components.get(wish, ())
+        if isinstance(text, tuple) and len(text) > 1 and (place := _component(text, Hole(str(number)))) < len(part):
+            wish = part[place]
         return [identifier(wish), identifier(f"{around}_{wish}")]
 
     def macro(self) -> str:
-        """The name of the macro."""
-        return free_name(self._macro_wishes(), {*self._grown.macros, *self._dialect.taken})
+        """The name of the macro: the best one that does not cost more than the macro saves, else the shortest."""
+        wishes = self._macro_wishes()
+        places = len(self._family.runs) + 1
+        short = [wish for wish in wishes if (len(wish) - NAME) * places < self._family.saving]
+        return free_name(short or [min([*wishes, identifier(self._forms[0].tag)], key=len)], {*self._grown.macros, *self._dialect.taken})
 
     def _macro_wishes(self) -> list[str]:
         hints = Counter(form.hint for form in self._forms if form.hint)
@@ -236,6 +243,12 @@ class Namer:
         text: Text = self._family.unified.texts[start + form.leaves.index(named)]
         pieces = [text] if isinstance(text, str) else [piece for piece in text if isinstance(piece, str)]
         return [word.lower() for piece in pieces for word in re.findall(r"[A-Za-z][A-Za-z0-9]*", piece)][:3]
+
+
+def _component(text: tuple[str | Hole | Signed, ...], hole: Hole) -> int:
+    """Which number of a list the hole is."""
+    before = itertools.takewhile(lambda piece: piece != hole, text)
+    return sum(piece.count(" ") for piece in before if isinstance(piece, str))
 
 
 def _is_wrapper(form: Form) -> bool:

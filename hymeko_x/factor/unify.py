@@ -26,6 +26,7 @@ Vector = tuple["Text", ...]
 Signs = tuple[bool, ...]
 """Whether a number is negative in each instance."""
 
+_LIST = re.compile(r"[-+.\deE]+( [-+.\deE]+)+")
 _MAGNITUDE = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
 
@@ -63,21 +64,22 @@ def unify(columns: list[Vector], cut: Callable[[str], tuple[str, ...]], *, signs
 
     for number, parts in drafts.items():
         pieces: list[Piece] = []
-        for part in parts:
-            if not isinstance(part, _Varying):
-                pieces.append(part)
-                continue
-            for piece in usage.decided(part):
-                if isinstance(piece, str | Hole | Signed):
-                    pieces.append(piece)
-                elif signed := usage.signed(piece):
-                    factors, negative, magnitude = signed
-                    names = tuple([hole(tuple(["-1" if minus else "1" for minus in factor]), number, is_sign=True) for factor in factors])
-                    pieces.append(Signed(names, negative, magnitude))
-                else:
-                    pieces.append(Hole(hole(piece, number)))
+        for piece in usage.decided_of(columns[number], parts):
+            if isinstance(piece, str | Hole | Signed):
+                pieces.append(piece)
+            elif signed := usage.signed(piece):
+                factors, negative, magnitude = signed
+                names = tuple([hole(tuple(["-1" if minus else "1" for minus in factor]), number, is_sign=True) for factor in factors])
+                pieces.append(Signed(names, negative, magnitude))
+            else:
+                pieces.append(Hole(hole(piece, number)))
         made.texts[number] = joined(pieces)
     return made
+
+
+def _is_list(text: Text) -> bool:
+    """Whether a text is a list of numbers, some of which may be holes."""
+    return bool(_LIST.fullmatch(text if isinstance(text, str) else "".join([piece if isinstance(piece, str) else "0" for piece in text])))
 
 
 def _is_constant(column: tuple[object, ...]) -> bool:
@@ -145,6 +147,19 @@ class _Usage:
         found = _signs(vector) if self._factors else None
         factors = self._factors.get(_normal(found[0])) if found else None
         return (factors, found[0][0], found[1]) if found and factors else None
+
+    def decided_of(self, column: Vector, parts: list[Piece | _Varying]) -> list[Piece | Vector]:
+        """The pieces of a column. Where several numbers of a list differ, and are one hole, the hole is the whole list."""
+        found: list[Piece | Vector] = []
+        for part in parts:
+            if not isinstance(part, _Varying):
+                found.append(part)
+                continue
+            pieces = self.decided(part)
+            if len(pieces) == 1 < len(part.pieces) and all(map(_is_list, column)):
+                return [column]
+            found += pieces
+        return found
 
     def decided(self, part: _Varying) -> tuple[Piece | Vector, ...]:
         """The varying values as a whole, or piece by piece where each of the pieces occurs elsewhere as well."""

@@ -65,3 +65,9 @@ def test_the_result_does_not_depend_on_how_deep_forms_are_nested() -> None:
     found = factor((form,), DIALECT)
     (macro,) = found.macros
     assert [macro.parameters, len(found.items)] == [(), 1]
+
+
+def test_a_macro_has_a_short_name_where_a_long_one_costs_more_than_it_saves() -> None:
+    leaves = (("name", "package://robot/meshes/hip.stl"), ("xyz", "0"), ("value", "0"))
+    (macro,) = factor((Element("link", leaves, (Element("link"),)),) * 3, Dialect()).macros
+    assert macro.name == "link"

@@ -35,7 +35,7 @@ def test_an_axis_is_called_axis_and_the_mesh_of_a_collision_after_it() -> None:
     assert macros["link"] == ["name", "mass", "mesh", "collision_mesh"]
 
 
-def test_what_visuals_and_collisions_share_is_called_after_its_geometry() -> None:
+def test_a_part_of_a_shape_is_no_macro_by_itself() -> None:
     shapes = _MESH.format("visual", "0.25", "{name}.dae") + _MESH.format("collision", "0.25", "{name}.dae")
     extra = (
         '<link name="foot">'
@@ -43,4 +43,26 @@ def test_what_visuals_and_collisions_share_is_called_after_its_geometry() -> Non
         + '<visual name="x"><geometry><box size="1 2 3"/></geometry></visual></link>'
     )
     joint = '<joint name="f" type="fixed"><parent link="base"/><child link="foot"/></joint>'
-    assert "mesh_geometry" in _macros(_chain(shapes) + extra + joint)
+    assert set(_macros(_chain(shapes) + extra + joint)) == {"link", "joint"}
+
+
+def test_numbers_of_a_list_of_which_several_differ_are_one_parameter_and_one_alone_is_called_after_its_direction() -> None:
+    shapes = _MESH.format("visual", "0", "{skin}.dae")
+    assert _macros(_chain(shapes))["joint"] == ["prefix", "z", "parent", "axis", "effort"]
+    printed = hx.dumps(hx.loads(f'<robot name="r">{_chain(shapes)}</robot>'.encode(), "urdf"), "xacro")
+    assert '<axis xyz="${axis}"/>' in printed
+    assert '<origin xyz="0 0 ${z}" rpy="0 0 0"/>' in printed
+
+
+def test_a_default_is_what_half_of_the_calls_have_and_no_name() -> None:
+    pads = ((1, "a", 1), (2, "a", 1), (3, "b", 1), (4, "c", 2), (5, "d", 3))
+    links = "".join(
+        f'<link name="pad_{n}"><visual name="{name}_skin"><origin xyz="0.0{n} 0.25 0.125" rpy="0 0 0"/>'
+        f'<geometry><cylinder radius="{radius}.125" length="0.0{n}125"/></geometry></visual></link>'
+        for n, name, radius in pads
+    )
+    joints = "".join(f'<joint name="j{n}" type="fixed"><parent link="pad_1"/><child link="pad_{n}"/></joint>' for n in range(2, 6))
+    printed = hx.dumps(hx.loads(f'<robot name="r">{links}{joints}</robot>'.encode(), "urdf"), "xacro")
+    assert "radius:=1.125" in printed
+    assert "prefix:=" not in printed
+    assert "length:=" not in printed

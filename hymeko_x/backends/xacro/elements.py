@@ -150,6 +150,10 @@ def _leaf_name(tag: str, leaf: str) -> str:
     return tag if (tag, leaf) == ("axis", "xyz") else _LEAVES.get(leaf, leaf) or tag
 
 
+FRAGMENTS = frozenset(("origin", "geometry", "mesh", "box", "cylinder", "sphere", "capsule", "material", "color", "texture"))
+FRAGMENTS |= {"mass", "inertia", "parent", "child", "axis", "limit", "dynamics"}
+"""Elements of which a macro is none that a person would make: it would be a part of a visual, an inertial or a joint."""
+
 DIALECT = Dialect(
     element=len("</>"),
     block=len("<></>") - len("</>"),
@@ -167,4 +171,7 @@ DIALECT = Dialect(
     can_be_default=can_be_default,
     values=True,
     can_be_value=can_be_value,
+    without_default=frozenset(("name", "prefix", "suffix", "part", "parent", "child")),
+    fragments=FRAGMENTS,
+    components={"xyz": ("x", "y", "z"), "rpy": ("roll", "pitch", "yaw")},
 )
