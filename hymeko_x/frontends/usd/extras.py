@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 from pxr import Gf, Sdf, Usd, UsdGeom
 
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.transforms import decomposed, matrix_of
@@ -77,7 +79,7 @@ def _gather_prim(prim: Prim, owner: tuple[Id, str], folded: set[str], scratch: A
     if unread.is_any or has_own_type or not (is_typed or prim.kind):
         relative = str(Sdf.Path(prim.path).MakeRelativePath(Sdf.Path(owner[1]))) if prim.path != owner[1] else ""
         is_over = is_typed or "@type" in builder.read_names.get(prim.path, ())
-        text = _text_of(prim, unread, scratch, is_over=is_over).replace(builder.scene.folder + "/", "")
+        text = _text_of(prim, unread, scratch, builder, is_over=is_over).replace(builder.scene.folder + "/", "")
         builder.add_extras(owner[0], Extra(words.FORMAT, relative, text))
 
 
@@ -97,8 +99,11 @@ def _unread_of(prim: Prim, element: Id | None, moved: Any | None, builder: UsdBu
     )
 
 
-def _text_of(prim: Prim, unread: _Unread, scratch: Any, *, is_over: bool) -> str:
-    """What is left of a prim as text of USD."""
+def _text_of(prim: Prim, unread: _Unread, scratch: Any, builder: UsdBuilder, *, is_over: bool) -> str:
+    """What is left of a prim as text of USD.
+
+    Raises: Refusal (HX001) for metadata of another type than USD has for it, as damaged files have.
+    """
     spec = prim.spec
     copy = Sdf.CreatePrimInLayer(scratch, f"/{prim.name}")
     copy.specifier = Sdf.SpecifierOver if is_over and not unread.has_type else spec.specifier
@@ -107,7 +112,12 @@ def _text_of(prim: Prim, unread: _Unread, scratch: Any, *, is_over: bool) -> str
     if unread.schemas:
         copy.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=list(unread.schemas)))
     for name in unread.metadata:
-        copy.SetInfo(name, spec.GetInfo(name))
+        try:
+            copy.SetInfo(name, spec.GetInfo(name))
+        except TypeError as error:
+            raise refuse(
+                codes.CANNOT_READ, f"the file is damaged: '{name}' of {prim.path} has another type", builder.origin_of(prim)
+            ) from error
     for name in unread.properties:
         Sdf.CopySpec(spec.layer, f"{prim.path}.{name}", scratch, f"/{prim.name}.{name}")
         _lead_where_it_led(spec.layer.GetObjectAtPath(f"{prim.path}.{name}"), scratch.GetObjectAtPath(f"/{prim.name}.{name}"))
