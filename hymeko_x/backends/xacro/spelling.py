@@ -81,7 +81,7 @@ def _product(signed: Signed) -> str:
     """A number with the sign of parameters: ``${-side*0.05}``, where that prints as the same digits."""
     sign = "-" if signed.negative else ""
     factors = "*".join(signed.factors)
-    number = CONSTANTS.get(signed.magnitude)
+    number = CONSTANTS.get(signed.magnitude) or (signed.magnitude if _is_exponential(signed.magnitude) else None)
     if number is not None:
         return f"${{{sign}{factors}*{number}}}"
     found = _DECIMAL.fullmatch(signed.magnitude)
@@ -90,6 +90,11 @@ def _product(signed: Signed) -> str:
         return f"${{{sign}{factors}}}{end}" if found[1] == "1" else f"${{{sign}{factors}*{found[1]}}}{end}"
     wanted = "1" if signed.negative else "-1"
     return f"${{'-' if {factors}=={wanted} else ''}}{signed.magnitude}"
+
+
+def _is_exponential(magnitude: str) -> bool:
+    """Whether a number has an exponent, and is written as Python prints it: ``1.61e-08``."""
+    return "e" in magnitude and str(float(magnitude)) == magnitude
 
 
 def _is_kept(digits: str) -> Iterator[bool]:
