@@ -10,7 +10,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import listed
 from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, Mechanism, joint_edge
 from hymeko_x.ir.names import names_in_use, rename
-from hymeko_x.ir.parts import Body, DofKind, Joint, Plane, Shape, Stance, World
+from hymeko_x.ir.parts import Body, DofKind, Joint, Plane, Sense, Shape, Stance, World
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import JointView, RobotEdge
@@ -88,13 +88,15 @@ def stands_for_world(root: Id, mechanism: Mechanism) -> bool:
 def make_world_a_link(mechanism: Mechanism, context: Context) -> Mechanism:
     """The world, if anything is attached to it, is a link called ``world`` without mass: the usual way to fix a base.
 
-    So is the world of a mechanism without bodies: such formats need a link. A link that stands for the world already needs no other.
+    A sensor that measures against the world is not attached to it. The world of a mechanism without bodies is a link, too: such formats
+    need one. A link that stands for the world already needs no other.
     """
     mechanism = _without_held_worlds(mechanism)
     there, alone = WORLD in mechanism.graph.vertices, not any(True for _ in mechanism.vertices(Body))
-    used = any(WORLD in [arc.target for arc in edge.arcs] for edge in mechanism.graph.edges.values())
+    edges = [edge for edge in mechanism.graph.edges.values() if not isinstance(edge.data, Sense)]
+    used = any(WORLD in [arc.target for arc in edge.arcs] for edge in edges)
     if not used and not (there and alone):
-        return mechanism.replace(without=[WORLD])
+        return without(mechanism, [WORLD]) if there else mechanism
     mechanism = rename(put_world_link_into_world(mechanism, context), {WORLD: WORLD_LINK})
     return mechanism.replace(vertices={WORLD_LINK: Body()})
 

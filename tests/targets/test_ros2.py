@@ -137,6 +137,13 @@ def test_a_floating_base_is_open_and_a_virtual_joint_of_the_srdf(tmp_path: Path)
     assert [dof.kind.value for view in back.joints.values() if view.id.name == "root" for dof in view.joint.dofs] == ["free"]
 
 
+def test_a_sensor_that_measures_against_the_world_leaves_the_base_open(tmp_path: Path) -> None:
+    sensor = '<sensor><framezaxis name="up" objtype="xbody" objname="world" reftype="xbody" refname="base"/></sensor></mujoco>'
+    tree = etree.parse(str(package(FLOATING.replace("</mujoco>", sensor), tmp_path)))
+    assert tree.find("link[@name='world']") is None
+    assert [joint.get("name") for joint in tree.findall("joint") if joint.find("child").get("link") == "base"] == []
+
+
 def test_what_only_a_simulation_has_is_left_out_with_a_note(tmp_path: Path) -> None:
     (tmp_path / "arm.xml").write_text(FLOATING, "utf-8")
     result = hx.convert(tmp_path / "arm.xml", tmp_path / "arm.urdf", target="ros2")
