@@ -46,6 +46,15 @@ def test_a_robot_without_actuators_is_held_by_servos(tmp_path: Path) -> None:
     assert _plugins(tmp_path / "again.sdf") == [servo, publisher]
 
 
+def test_limits_of_zero_that_would_hold_a_joint_still_are_left_out_with_a_note(tmp_path: Path) -> None:
+    (tmp_path / "arm.hymeko").write_text(ARM.replace("effort 20", "effort 0 velocity 0"), "utf-8")
+    report = hx.convert(tmp_path / "arm.hymeko", tmp_path / "arm.sdf", target="gazebo").report
+    text = (tmp_path / "arm.sdf").read_text()
+    assert ("<effort>" in text, "<velocity>" in text) == (False, False)
+    note = "limits of effort or velocity of 0, by which Gazebo holds a joint still, are left out (--for gazebo): 'upper'"
+    assert [row.message for row in report if "of 0" in row.message] == [note]
+
+
 def test_each_actuator_has_the_plugin_of_its_kind(tmp_path: Path) -> None:
     (tmp_path / "m.xml").write_text(DRIVEN, "utf-8")
     done = hx.convert(tmp_path / "m.xml", tmp_path / "m.sdf", target="gazebo")

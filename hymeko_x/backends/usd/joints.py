@@ -206,7 +206,7 @@ def write_behaviour(spec: Any, dof: Dof, physx: tuple[str, ...]) -> None:
     _write_schema(spec, "PhysxJointAPI", "physxJoint", T.Float, {name: value for name, value in values.items() if name in physx})
     if dof.limits.effort is not None:
         apply(spec, "MjcJointAPI")
-        put(spec, "mjc:actuatorfrcrange:min", T.Double, -dof.limits.effort)
+        put(spec, "mjc:actuatorfrcrange:min", T.Double, 0.0 - dof.limits.effort)
         put(spec, "mjc:actuatorfrcrange:max", T.Double, dof.limits.effort)
 
 
