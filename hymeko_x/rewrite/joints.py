@@ -9,19 +9,19 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.ir.graph import Edge
-from hymeko_x.ir.kinematics import edges_to_moved_dofs
+from hymeko_x.ir.kinematics import dof_number, edges_to_moved_dofs
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, coupling_edge, joint_edge
 from hymeko_x.ir.names import free_name, names_in_use
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import UNLIMITED, Body, Dof, DofKind, Joint, Limits
+from hymeko_x.ir.parts import UNLIMITED, Body, Coupling, Dof, DofKind, Drive, Joint, Limits, Sense, Tendon
 from hymeko_x.ir.values import IDENTITY, X, Y, Z
 from hymeko_x.rewrite.names import usable_name
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.values import Vec3
     from hymeko_x.rewrite.context import Context
 
@@ -106,6 +106,35 @@ def name_dofs(mechanism: Mechanism, context: Context) -> Mechanism:
         if tuple(new) != dofs:
             edges[view.id] = _with_dofs(mechanism, view.id, tuple(new))
     return _with_edges(mechanism, edges, moved)
+
+
+def name_dofs_in_use(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """A dof that an actuator, a sensor, a coupling or a tendon is on has a name, where other dofs need none."""
+    used = {(arc.target, number) for arc in _arcs_to_dofs(mechanism) if (number := _number_at(mechanism, arc)) is not None}
+    own = {key: _own_names(mechanism, mechanism.joints[key]) for key, _ in used}
+    nameless = sorted((key, number) for key, number in used if not own[key][number])
+    if not nameless:
+        return mechanism
+    taken = {name for view in mechanism.joints.values() for name in _own_names(mechanism, view) if name}
+    changed: dict[Id, list[Dof]] = {}
+    moved: dict[tuple[Id, int], tuple[Id, str]] = {}
+    for key, number in nameless:
+        view = mechanism.joints[key]
+        name = free_name(full_name(view, number), taken.__contains__)
+        taken.add(name)
+        changed.setdefault(key, list(view.joint.dofs))[number] = replace(view.joint.dofs[number], name=name)
+        moved[key, number] = (key, name)
+    return _with_edges(mechanism, {key: _with_dofs(mechanism, key, tuple(dofs)) for key, dofs in changed.items()}, moved)
+
+
+def _arcs_to_dofs(mechanism: Mechanism) -> Iterator[RobotArc]:
+    for part in (Drive, Sense, Coupling, Tendon):
+        for _, _, arcs in mechanism.edges(part):
+            yield from (arc for arc in arcs if arc.target in mechanism.joints)
+
+
+def _number_at(mechanism: Mechanism, arc: RobotArc) -> int | None:
+    return dof_number(mechanism.joints[arc.target].joint, arc.role)
 
 
 def name_dofs_once(mechanism: Mechanism, context: Context) -> Mechanism:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import mujoco
 import numpy as np
@@ -117,3 +118,26 @@ def test_a_sensor_of_an_actuator_that_mjcf_does_not_have_is_left_out(tmp_path: P
     )
     hx.convert(tmp_path / "s.hymeko", tmp_path / "s.xml")
     assert mujoco.MjModel.from_xml_path(str(tmp_path / "s.xml")).nsensor == 0
+
+
+NAMELESS = """<mujoco><worldbody>
+  <body name="arm"><joint type="slide"/><geom size="0.1"/></body>
+  <body><joint/><geom size="0.1"/></body>
+  <body name="cart"><joint type="slide"/><joint type="slide" axis="0 1 0"/><joint name="cart_TZ" axis="1 0 0"/><geom size="0.1"/></body>
+  <body><freejoint/><geom size="0.1"/></body>
+</worldbody></mujoco>
+"""
+
+
+@pytest.mark.parametrize("kind", ["motor", "position", "velocity"])
+def test_joints_without_names_get_names_for_the_actuators_that_are_asked_for(
+    kind: Literal["motor", "position", "velocity"], tmp_path: Path
+) -> None:
+    (tmp_path / "a.xml").write_text(NAMELESS)
+    hx.convert(tmp_path / "a.xml", tmp_path / "b.xml", actuators=kind)
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "b.xml"))
+    joints = [model.joint(number).name for number in range(model.njnt)]
+    assert joints == ["arm", "world_body", "cart_TZ#2", "cart_TY", "cart_TZ", ""]
+    assert [joints[number] for number in model.actuator_trnid[:, 0]] == joints[:-1]
+    hx.convert(tmp_path / "b.xml", tmp_path / "c.xml")
+    assert (tmp_path / "c.xml").read_bytes() == (tmp_path / "b.xml").read_bytes()

@@ -26,6 +26,7 @@ from hymeko_x.rewrite.joints import (
     lower_inner_free_joints,
     make_limits_intervals,
     name_dofs,
+    name_dofs_in_use,
     name_dofs_once,
     split_overfull_joints,
 )
@@ -170,6 +171,7 @@ _REPLACED: Mapping[Rule, Rule | None] = MappingProxyType(
 
 NATIVE: tuple[Rule, ...] = (
     *(rule for common in RULES if (rule := _REPLACED.get(common, common)) is not None),
+    name_dofs_in_use,
     name_dofs_once,
     _let_inertials_count,
     _drop_stale_keyframes,
