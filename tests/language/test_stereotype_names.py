@@ -109,3 +109,27 @@ def test_shapes_whose_bodies_gave_their_name_to_others_are_called_after_their_fo
     shapes = " ".join(f"collision {{ {solid} friction [0.6015625] }}" for solid in solids)
     bodies = " ".join(f"{side}_down {{ {shapes} }}" for side in ("big", "small", "thin", "fat"))
     assert _of_text(bodies) == ["down", "down_hull", "collision", "down_capsule", "down_sphere"]
+
+
+def test_a_stereotype_whose_name_another_one_has_is_called_after_what_it_gives() -> None:
+    limits = [("-3.140625", "3.140625")] * 5 + [(f"-1.{n}25", f"1.0{n}25") for n in range(1, 6)]
+    links = "".join(f'<link name="x{n}">{MASS}</link>' for n in range(11))
+    joints = "".join(
+        f'<joint name="q{n}" type="revolute"><parent link="x{n - 1}"/><child link="x{n}"/><origin xyz="0 0 0.{n}"/><axis xyz="0 0 1"/>'
+        f'<limit lower="{lower}" upper="{upper}" effort="40.{n}" velocity="10.0625"/><dynamics damping="0.125" friction="0.0625"/></joint>'
+        for n, (lower, upper) in enumerate(limits, 1)
+    )
+    text = hx.dumps(hx.loads(f'<robot name="r">{links}{joints}</robot>'.encode(), "urdf"), "hymeko")
+    assert _stereotypes(text) == ["part", "axle", "limited_axle"]
+
+
+def test_transmissions_are_called_after_their_interface() -> None:
+    links = "".join(f'<link name="x{n}">{MASS}</link>' for n in range(9))
+    joints = "".join(
+        f'<joint name="q{n}" type="continuous"><parent link="x{n - 1}"/><child link="x{n}"/><axis xyz="0 0 1"/></joint>'
+        f'<transmission name="t{n}"><type>{"a" * n}</type><joint name="q{n}"/><actuator name="m{n}">'
+        "<hardwareInterface>hardware_interface/VelocityJointInterface</hardwareInterface></actuator></transmission>"
+        for n in range(1, 9)
+    )
+    text = hx.dumps(hx.loads(f'<robot name="r">{links}{joints}</robot>'.encode(), "urdf"), "hymeko")
+    assert "velocity_drive" in _stereotypes(text)

@@ -43,8 +43,12 @@ _GLOSS = frozenset(("specular", "shininess", "reflectance"))
 _SOLIDS = ("box", "sphere", "cylinder", "capsule", "ellipsoid")
 _EFFORTS = ("effort", "forcerange", "ctrlrange", "gainprm", "kp")
 _ROTATIONS = {"X": "roll", "Y": "pitch", "Z": "yaw"}
+_GIVING = {"limit": "limited", "at": "moved", "axis": "tilted", "scale": "scaled", "rgba": "painted", "damping": "damped", "min": "limited"}
+"""What stands before the name of a stereotype that another one has, by a field that it gives."""
 _SHORT = 12
 """Letters of a name that is not too long to be used many times."""
+_INTERFACE = re.compile(r"([A-Z][a-z]+)(?:Joint|Actuator)?Interface")
+"""Of the controllers of ROS 1: ``hardware_interface/PositionJointInterface``."""
 _WORD = re.compile(r"[A-Za-z]\w{1,23}")
 """Words that make a good name."""
 
@@ -68,10 +72,14 @@ def names(kind: str, units: Sequence[Unit], members: Sequence[Element]) -> Itera
     yield plain
     if not is_inside or kind == "dof":
         yield from filter(_WORD.fullmatch, _by_values(units, plain))
-        yield plain
+        last = plain
     else:
         yield from filter(_WORD.fullmatch, _by_form(units, members, behind))
-        yield next(filter(_WORD.fullmatch, [f"{meaning([member.owner for member in members])}_{behind}"]), plain)
+        last = next(filter(_WORD.fullmatch, [f"{meaning([member.owner for member in members])}_{behind}"]), plain)
+    yield last
+    interface = _INTERFACE.search(given.get("hardwareInterface", ""))
+    yield from [f"{interface[1].lower()}_{last}"] if interface else []
+    yield from filter(_WORD.fullmatch, [f"{_GIVING[unit.slot]}_{last}" for unit in units if unit.slot in _GIVING][:1])
 
 
 def _by_form(units: Sequence[Unit], members: Sequence[Element], behind: str) -> Iterator[str]:
