@@ -17,7 +17,7 @@ from hymeko_x.ir.solids import with_tensor_of
 from hymeko_x.ir.values import numbers_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Container, Iterator
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism
@@ -92,11 +92,11 @@ def give_moving_bodies_mass(mechanism: Mechanism, context: Context) -> Mechanism
     return mechanism.replace(vertices=changed)
 
 
-def give_every_body_mass(mechanism: Mechanism, context: Context) -> Mechanism:
-    """Every body gets the least mass and inertia where it has none: SDF takes a link without an inertial for one of 1 kg."""
+def give_every_body_mass(mechanism: Mechanism, context: Context, without: Container[Id] = ()) -> Mechanism:
+    """Every body but ``without`` has at least the least mass and inertia: SDF takes a link without an inertial for one of 1 kg."""
     changed = {}
     for key, body in mechanism.vertices(Body):
-        if not _is_sound(body):
+        if not _is_sound(body) and key not in without:
             changed[key] = replace(body, inertial=_least_inertial(body.inertial))
     if changed:
         names = listed([f"'{key.name}'" for key in changed], 5)

@@ -253,3 +253,23 @@ def test_gains_that_follow_from_an_edited_mass_are_a_note(name: str, old: str, n
     assert (tmp_path / "lift.urdf").read_text() == LIFT.replace('mass value="1"', 'mass value="2"')
     hx.convert(tmp_path / "lift.urdf", tmp_path / name)
     assert [row for row in hx.update(tmp_path / "lift.urdf", tmp_path / name).report if row.code.id == "HX118"] == []
+
+
+BASE = """<sdf version="1.9">
+  <model name="m">
+    <link name="base"/>
+  </model>
+</sdf>
+"""
+
+
+@pytest.mark.unread("HX103", "HX105")
+def test_a_body_without_mass_that_is_added_to_sdf_weighs_nothing(tmp_path: Path) -> None:
+    """SDF takes a link without an inertial for one of 1 kg, as the base is here."""
+    (tmp_path / "r.sdf").write_text(BASE)
+    hx.convert(tmp_path / "r.sdf", tmp_path / "r.urdf")
+    tool = '<link name="tool"/><joint name="t" type="fixed"><parent link="base"/><child link="tool"/></joint></robot>'
+    (tmp_path / "r.urdf").write_text((tmp_path / "r.urdf").read_text().replace("</robot>", tool))
+    hx.update(tmp_path / "r.sdf", tmp_path / "r.urdf")
+    assert '    <link name="base"/>\n' in (tmp_path / "r.sdf").read_text()
+    assert [body.mass for body in hx.load(tmp_path / "r.sdf").bodies.values()] == [1.0, 1e-10]

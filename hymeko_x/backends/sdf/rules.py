@@ -157,6 +157,15 @@ def _limited(colour: tuple[float, ...] | None) -> tuple[float, ...] | None:
     return None if colour is None else tuple([min(max(component, 0.0), 1.0) for component in colour])
 
 
+def weigh_bodies(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Every body has a mass; in a mechanism from SDF one without inertial is new, unless the author lets collisions give it."""
+    if not notations.is_from_sdf(mechanism):
+        return give_every_body_mass(mechanism, context)
+    given = {key for key, found in mechanism.extras.items() if any(extra.text.startswith("<inertial") for extra in found)}
+    weighed = {key for key, body in mechanism.vertices(Body) if body.inertial is not None}
+    return give_every_body_mass(mechanism, context, without=given | weighed)
+
+
 # ---- the world ---------------------------------------------------------------------------------------------------------------
 
 
@@ -202,7 +211,7 @@ RULES: tuple[Rule, ...] = (
     unless_from_sdf(widen_cameras),
     unless_from_sdf(limit_colours),
     put_world_geometry_on_a_link,
-    unless_from_sdf(give_every_body_mass),
+    weigh_bodies,
     prefer_own_colours,
     partial(split_shared_shapes, ending="_collision"),
     unless_from_sdf(obey_gazebo_fragments),
