@@ -37,8 +37,8 @@ _DRAWN = ("material", "texture", "layer", "subset", "light")
 _DRAWN_FIELDS = ("rgba", "width")
 _DRAWN_EXTRAS = re.compile(r"@(rgba|group|material|type)$")
 _DECLARATION = re.compile(r"@xmlns\b|text\(\)$")
-_MATERIAL = re.compile(r" as 'material'|^material '")
-"""An arc to a material, or the material to which it leads."""
+_MATERIAL = re.compile(r"(?:\S+ )?material '[^']*'(?: as 'material')?")
+"""An arc to a material, or the material to which it leads; a shape that has one is more than that."""
 
 
 def aspect_of(loss: Loss) -> Aspect:
@@ -46,7 +46,7 @@ def aspect_of(loss: Loss) -> Aspect:
     kind, field = kind_of(loss), loss.field
     if field.startswith("comment ") or _DECLARATION.search(field):
         return Aspect.TEXT
-    if kind in _DRAWN or _MATERIAL.search(loss.before or loss.after or ""):
+    if kind in _DRAWN or _MATERIAL.fullmatch(loss.before or loss.after or ""):
         return Aspect.APPEARANCE
     if kind == "frame" and (field == "size" or _DRAWN_EXTRAS.search(field)):
         return Aspect.APPEARANCE

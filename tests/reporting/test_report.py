@@ -108,14 +108,14 @@ def test_a_humanoid_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest
         "dropped: 6 contacts: 'upper_lower_body', 'torso_head_1', ...",
         "dropped: 16 frames: 'pelvis', 'waist', ...",
         "dropped: 6 cameras: 'obs_hands', 'overshoulder', ...",
+        "approximated: 1 shape by other shapes: 'world/shape'",
         "dropped: 95 settings that only mjcf has: <compiler>, <default>, contype, conaffinity, ...",
         "no physics: 3 meshes renamed ('torso_waist_yaw' -> 'waist_yaw'); 63 shapes, 1 body described in another form;"
-        " appearance of 16 frames, 5 materials, 3 textures, 5 more",
+        " appearance of 16 frames, 5 materials, 3 textures, 2 more",
         "note[HX101]: effort limits are what the actuators can exert: 'torso_waist_yaw' 20000, 'torso_waist_pitch' 20000,"
         " 'torso_waist_roll' 20000, 'head_yaw' 20000, ...",
         "IN:57: note[HX101]: shape 'world/shape' is a plane, which the format cannot represent; it is written as a thin box",
-        "note[HX101]: URDF requires limits that are not given: velocity of 32 joints; 1e9 is written, which is read as none",
-        "-v lists each with its place, --report FILE.json has all",
+        "1 more kind; -v lists each with its place, --report FILE.json has all",
     ]
 
 
@@ -179,6 +179,7 @@ def loss(element: str, field: str, before: str | None, after: str | None, fate: 
         (loss("mechanism", "urdf @xmlns:xacro", "http://x", None), Aspect.TEXT),
         (loss("material 'a'", "", "material()", None), Aspect.APPEARANCE),
         (loss("shape 'a'", "[1]", "~ material 'a' as 'material'", None), Aspect.APPEARANCE),
+        (loss("shape 'a'", "", "shape(...) {+ body 'b', ~ material 'a' as 'material'}", None), Aspect.PHYSICS),
         (loss("shape 'a'", "[2].target", "material 'white'", "material 'material_0'"), Aspect.APPEARANCE),
         (loss("shape 'a'", "[0].target", "body 'a'", "body 'b'"), Aspect.PHYSICS),
         (loss("shape 'a'", "rgba", "[1 0 0 1]", "none"), Aspect.APPEARANCE),
