@@ -78,7 +78,7 @@ class Style(Struct, frozen=True):
     ``opening`` and ``closing`` (with ``{tag}``) go around the content of a block that had none; ``trailing`` is the pattern of what may
     follow a block on its line and belongs to it: blanks and a comment. ``escapes``: how a quotation mark is written between two of them.
     ``has_lines``: each field has a line of its own. ``derived`` are fields that follow from others, and are written only where the author
-    has them.
+    has them. ``head_tag`` is the tag of a block that stands in the head of the one around it, behind the fields there.
     """
 
     opening: str
@@ -87,6 +87,7 @@ class Style(Struct, frozen=True):
     escapes: Mapping[bytes, bytes] = field(default_factory=dict)
     has_lines: bool = False
     derived: frozenset[str] = frozenset()
+    head_tag: str | None = None
 
 
 class Outline(Struct, frozen=True):

@@ -117,7 +117,8 @@ class _Merge:
         for inner in self._moved_in(block):
             indent = self.print.indent(inner) or b""
             splices.put(inner.start, inner.end, reindented(self.texts[inner], b"", self.unit, indent, self.print_unit, b"\n"))
-        return reindented(splices.within(block), self.print.indent(block) or b"", self.print_unit, b"", self.unit, b"\n")
+        line = block.parent if block.parent is not None and block.tag == self.print.style.head_tag else block
+        return reindented(splices.within(block), self.print.indent(line) or b"", self.print_unit, b"", self.unit, b"\n")
 
     def _moved_in(self, block: Block) -> Iterator[Block]:
         """The outermost blocks in a new one that the author has already."""
@@ -141,6 +142,10 @@ class _Merge:
             if place is not None:
                 splices = self.splices[place.file]
                 splices.put(place.start, place.end, self._at(self.texts[child], splices, splices.indent(place) or b""))
+                continue
+            if child.tag == self.own.style.head_tag and (at := _behind_head(around)) is not None:
+                splices = self.splices[around.file]
+                splices.put(at, at, b" " + self._at(self.texts[child], splices, splices.indent(around) or b""))
                 continue
             anchor = self._anchor(child, around)
             if anchor is None:
@@ -195,6 +200,11 @@ class _Merge:
         start, end = around.inside
         at = start + len(splices.data[start:end].rstrip())
         splices.put(at, end, lines)
+
+
+def _behind_head(block: Block) -> int | None:
+    """Where the fields in the head of a block end; None where it has none there."""
+    return max((field.end for field in block.fields.values() if field.end <= block.head), default=None)
 
 
 def are_same(block: Block, other: Block) -> bool:

@@ -222,3 +222,47 @@ def test_a_link_that_stands_for_the_world_is_no_loss_where_the_world_is(name: st
     (tmp_path / "r.urdf").write_text(HELD)
     report = hx.convert(tmp_path / "r.urdf", tmp_path / name)
     assert [(loss.element, loss.field) for loss in report.losses] == ([] if name == "r.xml" else [("joint 'held'", "name")])
+
+
+STAGE = """#usda 1.0
+(
+    defaultPrim = "r"
+    upAxis = "Z"
+    metersPerUnit = 1
+)
+
+def Xform "r"
+{
+    def Xform "arm" (prepend apiSchemas = ["PhysicsRigidBodyAPI"])
+    {
+    }
+
+    def PhysicsRevoluteJoint "j"
+    {
+        uniform token physics:axis = "X" # along the arm
+
+        rel physics:body1 = </r/arm>
+    }
+}
+"""
+DAMPED = """    def PhysicsRevoluteJoint "j" (
+        prepend apiSchemas = ["MjcJointAPI", "NewtonJointAPI"]
+    )
+    {
+        uniform double mjc:damping = 0.25
+"""
+
+
+@pytest.mark.unread("HX101", "HX103", "HX105")
+def test_schemas_of_a_prim_without_any_stand_behind_its_name(tmp_path: Path) -> None:
+    (tmp_path / "r.usda").write_text(STAGE)
+    hx.convert(tmp_path / "r.usda", tmp_path / "r.xml")
+    there = (tmp_path / "r.xml").read_text()
+    assert there.count('<joint name="j"') == 1
+    (tmp_path / "r.xml").write_text(there.replace('<joint name="j"', '<joint name="j" damping="0.25"'))
+    report = hx.update(tmp_path / "r.usda", tmp_path / "r.xml").report
+    assert [str(row) for row in report if row.code.id in ("HX108", "HX118")] == []
+    text = (tmp_path / "r.usda").read_text()
+    assert DAMPED in text
+    lines = text.splitlines()
+    assert [line for line in STAGE.splitlines() if line not in lines] == ['    def PhysicsRevoluteJoint "j"']

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.source import Source
 
-STYLE = Style("\n{", "\n}", rb"[ \t]*(?:#[^\n]*)?", has_lines=True, derived=frozenset({"extent"}))
 NAME = "name of the prim"
 METADATA = "metadata"
 """The tag of the block that the metadata of a prim or of the layer are."""
+STYLE = Style("\n{", "\n}", rb"[ \t]*(?:#[^\n]*)?", has_lines=True, derived=frozenset({"extent"}), head_tag=METADATA)
 
 _TOKEN = re.compile(
     rb'"""(?s:.)*?"""|\'\'\'(?s:.)*?\'\'\'|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)*\'|@@@(?s:.)*?@@@|@[^@\n]*@|<[^>\n]*>|#[^\n]*'
