@@ -14,7 +14,7 @@ from hymeko_x.compare.relevance import is_idle, relevant
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_assets, with_same_numbers
-from hymeko_x.edits.weights import with_computed_gains, without_followed
+from hymeko_x.edits.weights import with_computed_gains, with_least_masses, without_followed
 from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
@@ -109,7 +109,9 @@ class Conversion:
         if self._first_image is None:
             self._first_image = guess.image
         sources = {key: mechanism.graph.vertices.get(homes.get(key, key)) for key, _ in self.edited.vertices(Actuator)}
-        self.edited, self.computed = with_computed_gains(self.edited, self._first_image, guess.image, sources)
+        self.edited, self.computed = with_computed_gains(
+            with_least_masses(self.edited, guess.image), self._first_image, guess.image, sources
+        )
         if self._asked is None:
             self._asked = frozenset(map(_aim, diff(guess.image, self.edited, TOLERANCE)))
         names = self._renames(guess.image)

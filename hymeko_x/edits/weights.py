@@ -10,6 +10,7 @@ from hymeko_x.ir.parts import Actuator, Body, Role
 from hymeko_x.ir.solids import joined
 from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.densities import Solids
+from hymeko_x.rewrite.inertia import LEAST
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -52,6 +53,16 @@ def with_computed_gains(edited: Mechanism, first: Mechanism, now: Mechanism, own
         if found is not None and found != part == first.graph.vertices.get(key) and not is_own:
             computed[key] = found
     return edited.replace(vertices=computed), list(computed)
+
+
+def with_least_masses(edited: Mechanism, image: Mechanism) -> Mechanism:
+    """The edited robot, in which bodies without an inertial have the least one where that is what ORIGINAL's format demands instead."""
+    least: dict[Id, Body] = {}
+    for key, body in image.vertices(Body):
+        other = edited.part(key, Body)
+        if other is not None and other.inertial is None and body.inertial is not None and body.inertial.mass == LEAST:
+            least[key] = body
+    return edited.replace(vertices=least)
 
 
 def _solid(solids: Solids, body: Id) -> Solid | None:

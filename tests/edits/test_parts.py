@@ -195,5 +195,5 @@ def test_the_parts_of_a_named_capsule_stand_where_it_stood(tmp_path: Path) -> No
     assert [line for line in after if line in kept] == kept
     assert len(after) == len(before) + 5
     assert '      <geom name="shin" type="cylinder" size="0.25 0.5"' in original.read_text()
-    called = [row.message.rpartition(" ")[2] for row in report if row.code.id == "HX118"]
-    assert called == ["'shin'"] * len(called)
+    called = {row.message.rpartition(" ")[2] for row in report if row.code.id == "HX118"}
+    assert called <= {"'shin'", "'shin_top'", "'shin_bottom'"}
