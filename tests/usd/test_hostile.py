@@ -65,3 +65,28 @@ def test_a_hundred_thousand_prims_are_read_in_bounded_time() -> None:
     assert [key.name for key, _ in mechanism.vertices(Body)] == ["a"]
     assert sum(len(found) for found in mechanism.extras.values()) >= 100_000
     assert time.process_time() - start < 300.0
+
+
+@pytest.mark.unread
+@pytest.mark.parametrize(
+    "line",
+    [
+        "float inputs:diffuseColor = 0.5",
+        "color3f inputs:diffuseColor = (1, 0, 0)\n color3f inputs:opacity = (1, 1, 1)",
+        "token inputs:metallic = 'a'",
+    ],
+)
+def test_an_input_of_another_type_is_no_colour(line: str) -> None:
+    material = f"""
+    def Material "paint"
+    {{
+        token outputs:surface.connect = </robot/paint/s.outputs:surface>
+        def Shader "s"
+        {{
+            uniform token info:id = "UsdPreviewSurface"
+            {line}
+            token outputs:surface
+        }}
+    }}
+"""
+    assert outcome(robot(body("a", "") + material).encode(), "robot.usda") == "read"

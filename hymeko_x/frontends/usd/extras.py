@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 STAGE = "/"
 """The path of the extra with the metadata of the stage."""
 _STAGE_KNOWN = ("upAxis", "metersPerUnit", "kilogramsPerUnit", "defaultPrim", "subLayers", "subLayerOffsets", "primChildren")
-_TARGETS = (("targetPaths", "targetPathList"), ("connectionPaths", "connectionPathList"))
+_TARGETS = (("connectionPaths", "connectionPathList"), ("targetPaths", "targetPathList"))
+"""What attributes and what relationships lead to."""
 _ARCS = ("references", "payload", "inheritPaths", "specializes", "variantSetNames", "variantSelection")
 _COMPOSED = ("specifier", "typeName", "apiSchemas", "instanceable", *_ARCS)
 
@@ -130,9 +131,9 @@ def _text_of(prim: Prim, unread: _Unread, scratch: Any, builder: UsdBuilder, *, 
 
 def _lead_where_it_led(item: Any, copy: Any) -> None:
     """A copied property whose targets are the prim itself or below it leads there, not to the copy, as USD thinks it should."""
-    for field, paths in _TARGETS:
-        if item.HasInfo(field):
-            getattr(copy, paths).CopyItems(getattr(item, paths))
+    field, paths = _TARGETS[isinstance(item, Sdf.RelationshipSpec)]
+    if item.HasInfo(field):
+        getattr(copy, paths).CopyItems(getattr(item, paths))
 
 
 def _gather_stage(layer: Any, builder: UsdBuilder) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import posixpath
 from typing import TYPE_CHECKING, Any
 
-from pxr import Sdf, UsdShade
+from pxr import Gf, Sdf, UsdShade
 
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
@@ -62,12 +62,12 @@ def bound_material(prim: Prim, builder: UsdBuilder) -> Id | None:
 
 
 def _material(name: str, shader: Any) -> Material:
-    colour, opacity = _colour(shader), _constant(shader, "opacity")
+    colour, opacity = _colour(shader), _constant(shader, "opacity", _NUMBERS)
     rgba = None
     if colour is not None:
         r, g, b = (single(float(value)) for value in colour)
         rgba = (r, g, b, single(float(opacity)) if opacity is not None else 1.0)
-    metallic, roughness = _constant(shader, "metallic"), _constant(shader, "roughness")
+    metallic, roughness = _constant(shader, "metallic", _NUMBERS), _constant(shader, "roughness", _NUMBERS)
     return Material(
         name,
         rgba,
@@ -81,16 +81,23 @@ def _colour(shader: Any) -> Any:
     image = _image(shader)
     scale = None if image is None else image.GetPrim().GetAttribute(words.SCALE)
     if not scale:
-        return _constant(shader, "diffuseColor")
-    return scale.Get()[:3] if scale.HasAuthoredValue() else None
+        return _constant(shader, "diffuseColor", _COLOURS)
+    factors = scale.Get() if scale.HasAuthoredValue() else None
+    return factors[:3] if isinstance(factors, _FACTORS) else None
 
 
-def _constant(shader: Any, name: str) -> Any:
-    """The constant value of an input; None where there is none or it comes from another shader."""
+_NUMBERS = (float, int)
+_COLOURS = (Gf.Vec3f, Gf.Vec3d, Gf.Vec3h)
+_FACTORS = (Gf.Vec4f, Gf.Vec4d, Gf.Vec4h)
+
+
+def _constant(shader: Any, name: str, kinds: tuple[type, ...]) -> Any:
+    """The constant value of an input; None where there is none of these types, or it comes from another shader."""
     found = UsdShade.Shader(shader).GetInput(name)
     if not found or found.HasConnectedSource():
         return None
-    return found.Get() if found.GetAttr().HasAuthoredValue() else None
+    value = found.Get() if found.GetAttr().HasAuthoredValue() else None
+    return value if isinstance(value, kinds) else None
 
 
 # ---- networks that are typed in full -------------------------------------------------------------------------------------------
