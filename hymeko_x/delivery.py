@@ -79,7 +79,8 @@ class Delivery(Struct, frozen=True):
             return None
         if not self.own.data.startswith(self.format.suffix_magic.get(suffix_of(self.path), b"")):
             return None
-        return copied(self.own, self.format, self.mechanism, self.place, report)
+        inside = self.passed.text if self.passed is not None and not self.passed.is_beside else ""
+        return copied(self.own, self.format, self.mechanism, self.place, report, kept=inside)
 
     def below(self, folder: str) -> Package:
         """The output with every file beside the main one below this folder, which ends in a slash. Raises: as :meth:`convert`."""

@@ -29,10 +29,13 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files, Source
 
 
-def copied(source: Source, format: Format, mechanism: Mechanism, place: pipeline.Place, report: Report) -> Package | None:
+def copied(
+    source: Source, format: Format, mechanism: Mechanism, place: pipeline.Place, report: Report, *, kept: str = ""
+) -> Package | None:
     """The package with the source's own text, for an output in another place; None where only a new text would be the same robot there.
 
-    Nor is a text copied whose root is that of an older version of its format, as the reader has reported.
+    Nor is a text copied whose root is that of an older version of its format, as the reader has reported, or that would lose what is
+    ``kept`` inside of it.
 
     The files that the text includes stand beside the output as they stand beside the source, if they are in its folder or below that.
     """
@@ -44,7 +47,7 @@ def copied(source: Source, format: Format, mechanism: Mechanism, place: pipeline
     shelf = Shelf(place.assets or format.assets, place.folder, around=place.around, origin=source.name)
     placed = _placed(mechanism, format, shelf, source.files, found)
     package = _with_text(source, format, mechanism, placed, Package(source.data, shelf.files, shelf.copies))
-    if package is None or not _is_same_robot(package, source, format, placed, place.folder):
+    if package is None or not _is_same_robot(package, source, format, placed, place.folder, kept):
         return None
     report.extend(found)
     return package
@@ -134,14 +137,12 @@ class Elsewhere(PackagesBehind, frozen=True):
         return self.package.read(path)
 
 
-def _is_same_robot(package: Package, source: Source, format: Format, mechanism: Mechanism, folder: str) -> bool:
-    """Whether the text is the robot where it is going to be."""
+def _is_same_robot(package: Package, source: Source, format: Format, mechanism: Mechanism, folder: str, kept: str) -> bool:
+    """Whether the text is the robot where it is going to be, and holds what is kept inside of it."""
     files = Elsewhere(source.files, PackageFiles(package, source.files), DiskFiles(Path(folder)))
     try:
         name = os.path.join(folder, os.path.basename(source.name))
-        found = pipeline.read_anyway(
-            replace(source, name=name, data=package.main, files=files, kept=None, ignores_kept=True), format, Report()
-        )
+        found, inside = pipeline.read_file(replace(source, name=name, data=package.main, files=files, kept=None), format, Report())
     except Refusal:
         return False
-    return not diff(mechanism, align(found, mechanism)[1], TOLERANCE)
+    return inside == kept and not diff(mechanism, align(found, mechanism)[1], TOLERANCE)

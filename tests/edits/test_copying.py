@@ -125,3 +125,19 @@ def test_what_is_kept_inside_goes_along_in_the_text_itself(suffix: str, folder: 
     assert second.read_bytes() == first.read_bytes()
     hx.convert(first, plain)
     assert "residue" not in plain.read_text()
+
+
+def test_what_is_kept_inside_goes_along_where_a_macro_has_the_path_that_changes(tmp_path: Path) -> None:
+    geom = '<geom type="mesh" mesh="part" density="500"/>'
+    leg = '<body name="{0}_leg" pos="0 {1} 0"><joint name="{0}_hip" range="-1 1"/>' + geom + "</body>"
+    legs = leg.format("left", 1) + leg.format("right", -1)
+    mesh = '<mesh name="part" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/>'
+    text = f'<mujoco model="r"><asset>{mesh}</asset><worldbody><body name="trunk">{geom}{legs}</body></worldbody>'
+    text += '<sensor><jointpos name="at" joint="left_hip"/></sensor></mujoco>'
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+    first, second = tmp_path / "a/r.xacro", tmp_path / "b/r.xacro"
+    hx.convert(written(tmp_path / "r.xml", text), first, keep="inside")
+    assert b"xacro:macro" in first.read_bytes()
+    hx.convert(first, second, keep="inside", assets="reference")
+    assert list(hx.load(first).sensors) == list(hx.load(second).sensors) == ["at"]
