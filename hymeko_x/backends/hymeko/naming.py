@@ -43,7 +43,7 @@ _GLOSS = frozenset(("specular", "shininess", "reflectance"))
 _SOLIDS = ("box", "sphere", "cylinder", "capsule", "ellipsoid")
 _EFFORTS = ("effort", "forcerange", "ctrlrange", "gainprm", "kp")
 _ROTATIONS = {"X": "roll", "Y": "pitch", "Z": "yaw"}
-_GIVING = {"limit": "limited", "at": "moved", "axis": "tilted", "scale": "scaled", "rgba": "painted", "damping": "damped", "min": "limited"}
+_GIVING = {"limit": "limited", "axis": "tilted", "scale": "scaled", "rgba": "painted", "damping": "damped", "min": "limited"}
 """What stands before the name of a stereotype that another one has, by a field that it gives."""
 _SHORT = 12
 """Letters of a name that is not too long to be used many times."""
@@ -80,6 +80,7 @@ def names(kind: str, units: Sequence[Unit], members: Sequence[Element]) -> Itera
     interface = _INTERFACE.search(given.get("hardwareInterface", ""))
     yield from [f"{interface[1].lower()}_{last}"] if interface else []
     yield from filter(_WORD.fullmatch, [f"{_GIVING[unit.slot]}_{last}" for unit in units if unit.slot in _GIVING][:1])
+    yield last
 
 
 def _by_form(units: Sequence[Unit], members: Sequence[Element], behind: str) -> Iterator[str]:
