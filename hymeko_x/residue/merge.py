@@ -23,7 +23,6 @@ from hymeko_x.residue.parts import GEOMETRY, broken, capsules_of, parts_of
 from hymeko_x.residue.realign import realign, with_new_names, with_old_names
 from hymeko_x.residue.sides import by_kind, moved, with_sides
 from hymeko_x.residue.stand_ins import with_stand_ins
-from hymeko_x.rewrite.shapes import ENDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -284,12 +283,11 @@ class _Merge:
 
 
 def _group_of(shape: Element) -> tuple[Id, str | None] | None:
-    """What a shape belongs to: all shapes of one name on one body stand or fall together, with the ends of a capsule."""
+    """What a shape belongs to: all shapes of one name on one body stand or fall together."""
     edge = shape.part
     if not (isinstance(edge, Edge) and isinstance(edge.data, Shape)):
         return None
-    name = edge.data.name
-    return _body_of(edge), name and next((name.removesuffix(end) for end in ENDS if name.endswith(end)), name)
+    return _body_of(edge), edge.data.name
 
 
 def _body_of(edge: RobotEdge) -> Id:

@@ -7,11 +7,14 @@ from collections import defaultdict
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from msgspec.structs import astuple
+
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import pose_weight
 from hymeko_x.ir.parts import Capsule, Cylinder, Role, Shape, Sphere
-from hymeko_x.ir.values import apply
+from hymeko_x.ir.values import compose
 from hymeko_x.residue.alike import is_alike
+from hymeko_x.rewrite.shapes import pieces_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -27,7 +30,7 @@ _MARK = "#"
 """Behind it stands the number of a shape among those of its body."""
 _DIGITS = 6
 """To how many decimals (m) a part of a capsule is where it belongs."""
-_NEAR = 1e-6
+_NEAR = 10.0**-_DIGITS
 """How far (m) the parts of one capsule may be from where they belong."""
 
 
@@ -59,30 +62,26 @@ def capsules_of(residue: Residue) -> dict[Id, Id]:
     for key, part in residue.additions:
         if not (isinstance(part, Edge) and isinstance(part.data, Shape) and isinstance(part.data.geometry, Capsule)):
             continue
-        parts = [there[place] for place in _places_of_parts(part)]
-        if all(parts):
-            found |= {alike.pop(0): key for alike in parts}
+        places = _places_of_parts(part)
+        parts = [there[place].pop(0) for place in places if there[place]]
+        if len(parts) == len(places):
+            found |= dict.fromkeys(parts, key)
     return found
 
 
 def _places_of_parts(capsule: RobotEdge) -> list[object]:
-    """Where the cylinder and the balls of a capsule are, for the eye and for contact."""
+    """What the parts of a capsule are known by, for the eye and for contact."""
     shape, arc = capsule.data, capsule.arcs[0]
     assert isinstance(shape, Shape)
-    assert isinstance(shape.geometry, Capsule)
-    radius, length = shape.geometry.radius, shape.geometry.length
-    parts: list[tuple[Geometry, float]] = [(Cylinder(radius, length), 0.0), (Sphere(radius), length / 2.0), (Sphere(radius), -length / 2.0)]
     roles = (Role.VISUAL, Role.COLLISION) if shape.role is Role.BOTH else (shape.role,)
-    pose = pose_weight(arc)
-    return [_where(arc.target, role, geometry, apply(pose, (0.0, 0.0, height))) for role in roles for geometry, height in parts]
+    pieces = [(geometry, compose(pose_weight(arc), pose).xyz) for _, geometry, pose in pieces_of(shape.geometry)]
+    return [_where(arc.target, role, geometry, place) for role in roles for geometry, place in pieces]
 
 
 def _where(body: Id, role: Role, geometry: Geometry, place: Vec3) -> object:
     """What a part is known by: where it is to the micrometre, and its size."""
-    numbers = (
-        (geometry.radius,) if isinstance(geometry, Sphere) else (geometry.radius, geometry.length) if isinstance(geometry, Cylinder) else ()
-    )
-    return body, role, type(geometry), tuple(round(number, _DIGITS) + 0.0 for number in (*place, *numbers))
+    sizes = astuple(geometry) if isinstance(geometry, (Cylinder, Sphere)) else ()
+    return body, role, type(geometry), tuple(round(number, _DIGITS) + 0.0 for number in (*place, *sizes))
 
 
 def _row(key: Id) -> str:

@@ -192,7 +192,7 @@ _THICKNESS = 1e-3
 FACETS = (40, 24)
 """Facets of a sphere around its axis and along it. So drawn, a capsule differs from a cylinder and two spheres in 0.4 % of its picture."""
 
-ENDS = ("_top", "_bottom")
+_ENDS = ("_top", "_bottom")
 """Behind the name of a capsule that of the balls at its ends."""
 
 Piece = tuple[str, "Geometry", Pose]
@@ -252,20 +252,24 @@ def approximate_shapes(mechanism: Mechanism, context: Context, kinds: tuple[type
 _INSTEAD = {"capsule": "a cylinder and two spheres", "plane": "a thin box", "ellipsoid": "a mesh"}
 
 
-def _pieces(view: ShapeView, names: Names) -> dict[Id, RobotEdge]:
-    """The shapes that stand for a capsule or a plane; the first one keeps the id and the name."""
-    match view.shape.geometry:
+def pieces_of(geometry: Geometry) -> list[Piece]:
+    """What stands for a capsule or a plane, the first piece in its middle; nothing for other geometries."""
+    match geometry:
         case Capsule(radius, length):
-            ends = [(end, Sphere(radius), Pose((0.0, 0.0, z))) for end, z in zip(ENDS, (length / 2.0, -length / 2.0), strict=True)]
-            pieces: list[Piece] = [("", Cylinder(radius, length), Pose()), *ends]
+            ends = [(end, Sphere(radius), Pose((0.0, 0.0, z))) for end, z in zip(_ENDS, (length / 2.0, -length / 2.0), strict=True)]
+            return [("", Cylinder(radius, length), Pose()), *ends]
         case Plane((x, y)):
             size = (2.0 * x or PLANE_SIZE, 2.0 * y or PLANE_SIZE, _THICKNESS)
-            pieces = [("", Box(size), Pose((0.0, 0.0, -_THICKNESS / 2.0)))]
+            return [("", Box(size), Pose((0.0, 0.0, -_THICKNESS / 2.0)))]
         case _:
-            pieces = []
+            return []
+
+
+def _pieces(view: ShapeView, names: Names) -> dict[Id, RobotEdge]:
+    """The shapes that stand for a capsule or a plane; the first one keeps the id and the name."""
     found: dict[Id, RobotEdge] = {}
     role = view.shape.role
-    for end, geometry, pose in pieces:
+    for end, geometry, pose in pieces_of(view.shape.geometry):
         key = view.id if not found else names.take("shape", f"{view.body.name}/{'shape' if role is Role.BOTH else role.value}")
         place = compose(view.pose, pose)
         name = view.shape.name and view.shape.name + end
