@@ -3,6 +3,7 @@
     python benchmarks/renders.py                      # every tenth development robot of the catalogue
     python benchmarks/renders.py --every 1 -o renders.json --pictures DIR
     python benchmarks/renders.py robot.urdf ...
+    python benchmarks/renders.py -o renders.json --resume      # go on where a run ended
 
 One line for each robot: how much of the picture it fills, and by target the part of the pixels that differ. Each robot has a process of
 its own.
@@ -16,6 +17,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import msgspec
@@ -40,7 +42,7 @@ CHANGED = 0.005
 _DARK = 40
 """A picture whose robot is nowhere brighter than this is black."""
 _SECONDS = 300.0
-
+"""The time that a robot has, unless the command line gives another."""
 
 KNOWN: dict[str, str | tuple[str, ...]] = {
     "adroit": "",  # images that MuJoCo folds around a cube; other formats lay them out flat
@@ -57,7 +59,10 @@ KNOWN: dict[str, str | tuple[str, ...]] = {
 
 
 class Drawn(msgspec.Struct):
-    """One robot: the part of the picture that it fills, its brightest pixel, and by target the part that differs, or why there is none."""
+    """One robot: the part of the picture that it fills, its brightest pixel, and by target the part that differs, or why there is none.
+
+    ``seconds``: how long all of this took.
+    """
 
     path: str
     filled: float = 0.0
@@ -65,6 +70,7 @@ class Drawn(msgspec.Struct):
     reason: str = ""
     changed: dict[str, float] = {}
     failed: dict[str, str] = {}
+    seconds: float = 0.0
 
     @property
     def faults(self) -> list[str]:
@@ -121,16 +127,19 @@ def _converted(robot: Robot, target: formats.Format, look: Look, studio: Studio)
         return open_studio(again, str(file) if is_drawn(target) else None, look, studio)
 
 
-def apart(path: str, pictures: Path | None) -> Drawn:
+def apart(path: str, pictures: Path | None, seconds: float = _SECONDS) -> Drawn:
     """As :func:`drawn`, in a process of its own, which may crash."""
+    start = time.monotonic()
     words = [sys.executable, __file__, "--one", path, *(["--pictures", str(pictures)] if pictures else [])]
     try:
-        done = subprocess.run(words, capture_output=True, text=True, timeout=_SECONDS, check=False)
+        done = subprocess.run(words, capture_output=True, text=True, timeout=seconds, check=False)
     except subprocess.TimeoutExpired:
-        return Drawn(path, reason=f"took more than {_SECONDS:.0f} s")
+        return Drawn(path, reason=f"took more than {seconds:.0f} s")
     if done.returncode:
         return Drawn(path, reason=f"exit {done.returncode}: {done.stderr.strip()[-200:]}")
-    return msgspec.json.decode(done.stdout.splitlines()[-1], type=Drawn)
+    found = msgspec.json.decode(done.stdout.splitlines()[-1], type=Drawn)
+    found.seconds = round(time.monotonic() - start, 1)
+    return found
 
 
 def development_robots(every: int) -> list[str]:
@@ -150,6 +159,20 @@ def line(found: Drawn) -> str:
     return f"  {mark} {found.path}: fills {found.filled:.2f}, differs by % {parts}{failed}"
 
 
+def run(robots: list[str], chosen: argparse.Namespace) -> list[Drawn]:
+    """All robots, one after the other, with a line for each. The output is whole after each of them, so that a run can go on from there."""
+    kept: dict[str, Drawn] = {}
+    if chosen.resume and chosen.output.exists():
+        kept = {one.path: one for one in msgspec.json.decode(chosen.output.read_bytes(), type=list[Drawn])}
+    for path in robots:
+        if path not in kept or kept[path].reason:
+            kept[path] = apart(path, chosen.pictures, chosen.seconds)
+        print(line(kept[path]), flush=True)
+        if chosen.output:
+            chosen.output.write_text(json.dumps([msgspec.to_builtins(one) for one in kept.values()], indent=1) + "\n")
+    return [kept[path] for path in robots]
+
+
 def main() -> int:
     """Draw them all; exit 1 when one misses the bar."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -157,24 +180,23 @@ def main() -> int:
     parser.add_argument("--every", type=int, default=10, metavar="N", help="each n-th of them (default 10)")
     parser.add_argument("--pictures", type=Path, metavar="DIR", help="put the pictures of what differs here")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE.json", help="the numbers as JSON")
+    parser.add_argument("--resume", action="store_true", help="keep the numbers of robots that the output has")
+    parser.add_argument("--seconds", type=float, default=_SECONDS, metavar="S", help=f"the time of a robot (default {_SECONDS:.0f})")
     parser.add_argument("--one", help=argparse.SUPPRESS)
     chosen = parser.parse_args()
+    if chosen.resume and not chosen.output:
+        parser.error("--resume goes on with the numbers of an output: give -o FILE.json")
     choose_backend()
     if chosen.pictures:
         chosen.pictures.mkdir(parents=True, exist_ok=True)
     if chosen.one:
         print(msgspec.json.encode(drawn(chosen.one, chosen.pictures)).decode())
         return 0
-    results = []
-    for path in chosen.files or development_robots(chosen.every):
-        results.append(apart(path, chosen.pictures))
-        print(line(results[-1]), flush=True)
+    results = run(chosen.files or development_robots(chosen.every), chosen)
     made = [found for found in results if not found.reason]
     good = [found for found in made if not unknown(found)]
     known = sum(bool(found.faults) for found in good)
     print(f"{len(results)} robots, {len(made)} drawn, {len(good)} without a fault or with one that is known ({known})")
-    if chosen.output:
-        chosen.output.write_text(json.dumps([msgspec.to_builtins(found) for found in results], indent=1) + "\n")
     return 0 if len(good) == len(made) else 1
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -138,3 +139,20 @@ def test_bones_below_a_skin_are_compared(tmp_path: Path) -> None:
     (tmp_path / "r.xml").write_text(SKINNED)
     found = renders.drawn(str(tmp_path / "r.xml"))
     assert (found.reason, found.failed, found.faults) == ("", {}, [])
+
+
+def test_an_interrupted_run_goes_on_where_it_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[str] = []
+
+    def one(path: str, _pictures: Path | None, _seconds: float) -> renders.Drawn:
+        if path == "c":
+            raise KeyboardInterrupt
+        drawn.append(path)
+        return renders.Drawn(path, 0.5, 200, reason="took more than 1 s" if path == "b" and drawn.count("b") == 1 else "")
+
+    monkeypatch.setattr(renders, "apart", one)
+    chosen = argparse.Namespace(output=tmp_path / "renders.json", resume=True, pictures=None, seconds=1.0)
+    with pytest.raises(KeyboardInterrupt):
+        renders.run(["a", "b", "c", "d"], chosen)
+    assert [found.path for found in renders.run(["a", "b", "d"], chosen)] == ["a", "b", "d"]
+    assert drawn == ["a", "b", "b", "d"]  # the one that took too long is drawn again
