@@ -90,10 +90,11 @@ class Studio:
         mujoco.mj_forward(self.model, self.data)
         self._options = _options(look, self._groups)
 
-    def still(self) -> Picture:
-        """One picture of the robot in its pose."""
+    def still(self, *, tendons: bool = True) -> Picture:
+        """One picture of the robot in its pose. ``tendons``: with those that lead along a path."""
         import mujoco
 
+        self._options.flags[mujoco.mjtVisFlag.mjVIS_TENDON] = tendons
         return next(self._drawn([self.data.qpos.copy()], self.corners, mujoco))
 
     def covered(self) -> NDArray[np.bool_]:

@@ -141,6 +141,24 @@ def test_bones_below_a_skin_are_compared(tmp_path: Path) -> None:
     assert (found.reason, found.failed, found.faults) == ("", {}, [])
 
 
+TIED = """<mujoco model="r"><worldbody><body name="b" pos="0 0 1"><joint name="j" axis="0 1 0"/>
+  <geom type="box" size="0.2 0.1 0.1" mass="1"/><site name="s" pos="0.2 0 0.1"/></body><site name="t" pos="0.6 0.3 1.6"/></worldbody>
+<tendon><spatial name="cable" width="0.03" rgba="0.9 0.1 0.1 1"><site site="s"/><site site="t"/></spatial></tendon></mujoco>"""
+
+
+def test_a_robot_with_a_cable_is_compared_without_it_in_formats_that_have_no_tendons(tmp_path: Path) -> None:
+    (tmp_path / "r.xml").write_text(TIED)
+    found = renders.drawn(str(tmp_path / "r.xml"))
+    assert (found.reason, found.failed, found.faults) == ("", {}, [])
+    assert {*found.changed} >= renders.WITHOUT_TENDONS
+
+
+def test_a_lost_cable_is_found(tmp_path: Path) -> None:
+    (tmp_path / "r.xml").write_text(TIED)
+    (tmp_path / "other.xml").write_text(TIED[: TIED.index("<tendon>")] + "</mujoco>")
+    assert changed(tmp_path / "r.xml", tmp_path / "other.xml") > renders.CHANGED
+
+
 def test_an_interrupted_run_goes_on_where_it_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[str] = []
 
