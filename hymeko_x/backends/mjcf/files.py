@@ -5,22 +5,22 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from msgspec import Struct, field
+from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.assets.companions import companion_reader
-from hymeko_x.assets.pack import package_hint
 from hymeko_x.assets.shelf import Shelf, read_file
 from hymeko_x.backends.mjcf.mesh_names import name_meshes
+from hymeko_x.backends.mjcf.packing import Packing, warn
+from hymeko_x.backends.mjcf.textures import TEXTURES, pack_textures
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
 from hymeko_x.formats.mjcf.files import refused
 from hymeko_x.formats.mjcf.words import from_mjcf
-from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import Extra, Id, shape_edge
 from hymeko_x.ir.names import names_in_use
-from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
-from hymeko_x.meshes.images import UnreadableImage, png_bytes
+from hymeko_x.ir.parts import Material, Mesh, Role, Texture
+from hymeko_x.meshes.images import png_bytes
 from hymeko_x.source import file_stem, suffix_of
 
 if TYPE_CHECKING:
@@ -30,9 +30,6 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files
 
 _MESHES = "meshes"
-_TEXTURES = "textures"
-_KTX = b"\xabKTX"
-"""The first bytes of images that are compressed for the graphics card; MuJoCo hands them to its renderer as they are."""
 _LEAST_VOLUME = 1e-13
 """m^3; MuJoCo refuses solid meshes below 1e-15, which it computes in single precision."""
 _FLAT = 1e-7
@@ -56,18 +53,6 @@ class _Piece(Struct, frozen=True):
     material: Id | None
 
 
-class _Packing(Builder, kw_only=True):
-    """One run: what it reads from, and what it adds to the mechanism."""
-
-    mechanism: Mechanism
-    shelf: Shelf
-    files: Files
-    report: Report
-    gone: list[Id] = field(default_factory=list)
-    surfaces: set[Id] = field(default_factory=set)
-    materials: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
-
-
 def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     """The mechanism with meshes and textures that MuJoCo reads; shapes whose mesh cannot be read are left out."""
     if from_mjcf(mechanism):
@@ -76,47 +61,17 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
         return pack_native(mechanism, shelf, files, report)
     if not any(mechanism.assets()):
         return mechanism
-    run = _Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
-    _pack_textures(run)
+    run = Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
+    pack_textures(run)
     _pack_meshes(run)
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), _SHELL) for key in run.surfaces}}
     return name_meshes(replace(run.added_to(mechanism, run.gone), extras=extras), mechanism)
 
 
-# ---- textures ----------------------------------------------------------------------------------------------------------------
-
-
-def _pack_textures(run: _Packing) -> None:
-    """PNG and KTX are copied, other images are converted; a texture that is not there is left out, and its material keeps its colour."""
-    lost = {key for key, texture in run.mechanism.vertices(Texture) if not _pack_texture(run, key, texture)}
-    run.gone += lost
-    run.gone += [key for key, _, arcs in run.mechanism.edges(Layer) if any(arc.target in lost for arc in arcs)]
-
-
-def _pack_texture(run: _Packing, key: Id, texture: Texture) -> bool:
-    found = read_file(run.files, texture.uri or "")
-    if found is None:
-        _warn(run, key, codes.ASSET_NOT_FOUND, f"'{texture.uri}' was not found; the texture is left out", texture.uri)
-        return False
-    path, data = found
-    if data.startswith(_KTX):
-        run.vertices[key] = replace(texture, uri=run.shelf.copy(_TEXTURES, file_stem(texture.uri or ""), ".ktx", path, data))
-        return True
-    try:
-        png = png_bytes(data)
-    except UnreadableImage as error:
-        _warn(run, key, codes.ASSET_UNREADABLE, f"'{texture.uri}' cannot be read: {error}; the texture is left out")
-        return False
-    stem, same = file_stem(texture.uri or ""), png is data
-    uri = run.shelf.copy(_TEXTURES, stem, ".png", path, data) if same else run.shelf.place(_TEXTURES, stem, ".png", png)
-    run.vertices[key] = replace(texture, uri=uri)
-    return True
-
-
 # ---- meshes --------------------------------------------------------------------------------------------------------------------
 
 
-def _pack_meshes(run: _Packing) -> None:
+def _pack_meshes(run: Packing) -> None:
     """Every mesh once to be shown and once for contact, as far as the two differ."""
     users = run.mechanism.shapes_by_mesh()
     for key, mesh in run.mechanism.vertices(Mesh):
@@ -128,7 +83,7 @@ def _pack_meshes(run: _Packing) -> None:
             _leave_out(run, key, users.get(key, []), codes.ASSET_NOT_FOUND, "it names no file")
 
 
-def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
+def _pack_inline(run: Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
     """Data that the mechanism holds stays in the text if there is little of it; else, or if MuJoCo would refuse it, it becomes a file."""
     from hymeko_x.backends.mjcf.meshes import mesh_file, stays_inline
     from hymeko_x.meshes.reader import inline_part
@@ -151,7 +106,7 @@ def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> 
         _leave_out(run, key, users, codes.ASSET_UNREADABLE, f"its data cannot be used: {error}")
 
 
-def _pack_mesh(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
+def _pack_mesh(run: Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
     from hymeko_x.meshes.reader import read_parts
     from hymeko_x.meshes.submesh import Unreadable
 
@@ -183,12 +138,12 @@ def _pack_mesh(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> No
         run.gone.append(key)
 
 
-def _use(run: _Packing, view: ShapeView, mesh: Id | None, material: Id | None) -> None:
+def _use(run: Packing, view: ShapeView, mesh: Id | None, material: Id | None) -> None:
     if (mesh, material) != (view.mesh, view.material):
         run.edges[view.id] = shape_edge(view.shape, view.body, view.pose, mesh, material)
 
 
-def _show(run: _Packing, view: ShapeView, pieces: list[_Piece]) -> None:
+def _show(run: Packing, view: ShapeView, pieces: list[_Piece]) -> None:
     """A visual becomes one per appearance; those of the file count where it has some, as in RViz, else the shape's own."""
     for number, piece in enumerate(pieces):
         shape = view.shape if piece.material is None else replace(view.shape, rgba=None)
@@ -202,7 +157,7 @@ def _show(run: _Packing, view: ShapeView, pieces: list[_Piece]) -> None:
 # ---- one file --------------------------------------------------------------------------------------------------------------------
 
 
-def _pack_appearances(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], file: _File, hull: Id | None) -> list[_Piece]:
+def _pack_appearances(run: Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], file: _File, hull: Id | None) -> list[_Piece]:
     """The meshes that show a file, one per appearance. The file itself where MuJoCo reads it and it has one appearance.
 
     Raises: Unreadable.
@@ -220,7 +175,7 @@ def _pack_appearances(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, 
     return [_Piece(target, material)]
 
 
-def _own_mesh(run: _Packing, mesh: Mesh, part: Submesh) -> _Piece:
+def _own_mesh(run: Packing, mesh: Mesh, part: Submesh) -> _Piece:
     """A part of a file as a mesh of its own."""
     meaning = "" if part.appearance is None else _meaning_of(part.appearance)
     name = "_".join(filter(None, (file_stem(mesh.uri or ""), meaning)))
@@ -229,7 +184,7 @@ def _own_mesh(run: _Packing, mesh: Mesh, part: Submesh) -> _Piece:
     return _Piece(key, _material(run, part.appearance, mesh))
 
 
-def _pack_hull(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], file: _File) -> Id:
+def _pack_hull(run: Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], file: _File) -> Id:
     """The mesh for contact: all of the file, with a volume.
 
     Raises: Unreadable.
@@ -243,7 +198,7 @@ def _pack_hull(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], f
     return key
 
 
-def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Submesh, file: _File, *, solid: bool) -> None:
+def _store(run: Packing, target: Id, key: Id, mesh: Mesh, part: Submesh, file: _File, *, solid: bool) -> None:
     """The file as it is where MuJoCo takes it, else converted; with a note of the reason."""
     _check_surface(part)
     path, data = file
@@ -265,7 +220,7 @@ def _check_surface(part: Submesh) -> None:
         raise Unreadable("all of its points lie on a line")
 
 
-def _with_surface(run: _Packing, key: Id, parts: tuple[Submesh, ...]) -> list[Submesh]:
+def _with_surface(run: Packing, key: Id, parts: tuple[Submesh, ...]) -> list[Submesh]:
     """The parts that there is something to see of.
 
     Raises: Unreadable when there are none.
@@ -304,7 +259,7 @@ def _objects_in(obj: bytes) -> int:
     return sum(_FACE.search(group) is not None for group in _GROUP.split(obj))
 
 
-def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Submesh, stem: str, *, solid: bool, stl: bool = False) -> None:
+def _write_mesh(run: Packing, key: Id, mesh: Mesh, part: Submesh, stem: str, *, solid: bool, stl: bool = False) -> None:
     """A converted file: STL stays STL where that is enough, all else becomes OBJ, which may hold a point twice."""
     import numpy as np
 
@@ -324,7 +279,7 @@ def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Submesh, stem: str, *,
     _add_mesh(run, key, replace(mesh, uri=uri), part)
 
 
-def _add_mesh(run: _Packing, key: Id, mesh: Mesh, part: Submesh) -> None:
+def _add_mesh(run: Packing, key: Id, mesh: Mesh, part: Submesh) -> None:
     run.vertices[key] = mesh
     if _is_sheet(part, mesh):
         run.surfaces.add(key)
@@ -358,7 +313,7 @@ def _is_sheet(part: Submesh, mesh: Mesh) -> bool:
 # ---- appearances ----------------------------------------------------------------------------------------------------------------------
 
 
-def _material(run: _Packing, found: Appearance | None, mesh: Mesh) -> Id | None:
+def _material(run: Packing, found: Appearance | None, mesh: Mesh) -> Id | None:
     """The material of an appearance in a file; equal ones share it."""
     if found is None or (found.rgba is None and found.image is None):
         return None
@@ -368,7 +323,7 @@ def _material(run: _Packing, found: Appearance | None, mesh: Mesh) -> Id | None:
     new = Material(_meaning_of(found) or file_stem(mesh.uri or ""), found.rgba)
     key = run.materials[found.rgba, found.image] = run.add_material(new, mark="_")
     if found.image is not None:
-        run.add_texture(Texture(run.shelf.place(_TEXTURES, key.name, ".png", png_bytes(found.image))), key)
+        run.add_texture(Texture(run.shelf.place(TEXTURES, key.name, ".png", png_bytes(found.image))), key)
     return key
 
 
@@ -382,18 +337,13 @@ def _meaning_of(found: Appearance) -> str:
 # ---- diagnostics -----------------------------------------------------------------------------------------------------------------------
 
 
-def _report_converted(run: _Packing, key: Id, message: str) -> None:
+def _report_converted(run: Packing, key: Id, message: str) -> None:
     run.report.note(codes.ASSET_CONVERTED, f"{key} {message}", run.mechanism.origin(key), element=str(key))
 
 
-def _leave_out(run: _Packing, key: Id, users: list[ShapeView], code: Code, message: str) -> None:
+def _leave_out(run: Packing, key: Id, users: list[ShapeView], code: Code, message: str) -> None:
     """The mesh and every shape of it; the warning names them."""
     kinds = ", ".join(f"{view.shape.role.value} '{view.shape.name or view.id.name}' of {view.body}" for view in users)
     uri = run.mechanism.vertex(key, Mesh).uri
-    _warn(run, key, code, f"{message}; left out: {kinds or 'nothing that is shown'}", uri)
+    warn(run, key, code, f"{message}; left out: {kinds or 'nothing that is shown'}", uri)
     run.gone += [key, *(view.id for view in users)]
-
-
-def _warn(run: _Packing, key: Id, code: Code, message: str, uri: str | None = None) -> None:
-    hint = package_hint(uri or "") if code is codes.ASSET_NOT_FOUND else ""
-    run.report.warn(code, f"{key}: {message}", run.mechanism.origin(key), element=str(key), hint=hint)

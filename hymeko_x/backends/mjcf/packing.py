@@ -1,0 +1,35 @@
+"""What the packing of meshes and of textures for MuJoCo share: one run, and its warnings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from msgspec import field
+
+from hymeko_x import codes
+from hymeko_x.assets.pack import package_hint
+from hymeko_x.ir.builder import Builder
+
+if TYPE_CHECKING:
+    from hymeko_x.assets.shelf import Shelf
+    from hymeko_x.diagnostics import Code, Report
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.source import Files
+
+
+class Packing(Builder, kw_only=True):
+    """One run: what it reads from, and what it adds to the mechanism."""
+
+    mechanism: Mechanism
+    shelf: Shelf
+    files: Files
+    report: Report
+    gone: list[Id] = field(default_factory=list)
+    surfaces: set[Id] = field(default_factory=set)
+    materials: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
+
+
+def warn(run: Packing, key: Id, code: Code, message: str, uri: str | None = None) -> None:
+    """Report that an asset is left out."""
+    hint = package_hint(uri or "") if code is codes.ASSET_NOT_FOUND else ""
+    run.report.warn(code, f"{key}: {message}", run.mechanism.origin(key), element=str(key), hint=hint)
