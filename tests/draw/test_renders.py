@@ -174,3 +174,16 @@ def test_an_interrupted_run_goes_on_where_it_ended(tmp_path: Path, monkeypatch: 
         renders.run(["a", "b", "c", "d"], chosen)
     assert [found.path for found in renders.run(["a", "b", "d"], chosen)] == ["a", "b", "d"]
     assert drawn == ["a", "b", "b", "d"]  # the one that took too long is drawn again
+
+
+WOODEN = """<mujoco model="r"><asset><texture name="wood" type="cube" file="wood.png"/><material name="wood" texture="wood"/></asset>
+<worldbody><body name="b" pos="0 0 1"><freejoint/><geom type="box" size="0.2 0.3 0.4" material="wood"/></body></worldbody></mujoco>"""
+
+
+def test_an_image_on_the_sides_of_a_box_is_there_in_every_format(tmp_path: Path) -> None:
+    wood = np.zeros((32, 32, 3), np.uint8)
+    wood[:16, :16], wood[16:, :16], wood[16:, 16:] = (60, 160, 60), (200, 200, 60), (160, 60, 60)
+    Image.fromarray(wood).save(tmp_path / "wood.png")
+    (tmp_path / "r.xml").write_text(WOODEN)
+    found = renders.drawn(str(tmp_path / "r.xml"))
+    assert (found.reason, found.failed, found.faults) == ("", {}, [])

@@ -48,7 +48,7 @@ def _file(uri: str | None, folder: str) -> str | None:
 
 
 def _texture(sheet: MjcfSheet, key: Id, texture: Texture) -> Tag:
-    """An image. Without a type it would be one for the six sides of a cube."""
+    """An image. Without a type it would be one for the six sides of a cube, which packing makes some of those on solids."""
     attributes = {
         "name": sheet.name(key),
         "class": sheet.own_class(key),

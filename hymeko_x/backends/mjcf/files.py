@@ -64,7 +64,7 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
     run = Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
     pack_textures(run)
     _pack_meshes(run)
-    extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), _SHELL) for key in run.surfaces}}
+    extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), extra) for key, extra in run.attributes.items()}}
     return name_meshes(replace(run.added_to(mechanism, run.gone), extras=extras), mechanism)
 
 
@@ -282,7 +282,7 @@ def _write_mesh(run: Packing, key: Id, mesh: Mesh, part: Submesh, stem: str, *, 
 def _add_mesh(run: Packing, key: Id, mesh: Mesh, part: Submesh) -> None:
     run.vertices[key] = mesh
     if _is_sheet(part, mesh):
-        run.surfaces.add(key)
+        run.attributes[key] = _SHELL
 
 
 # ---- geometry --------------------------------------------------------------------------------------------------------------------

@@ -13,19 +13,19 @@ from hymeko_x.ir.builder import Builder
 if TYPE_CHECKING:
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Code, Report
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.source import Files
 
 
 class Packing(Builder, kw_only=True):
-    """One run: what it reads from, and what it adds to the mechanism."""
+    """One run: what it reads from, and what it adds to the mechanism; ``attributes`` are those of meshes and textures in MJCF."""
 
     mechanism: Mechanism
     shelf: Shelf
     files: Files
     report: Report
     gone: list[Id] = field(default_factory=list)
-    surfaces: set[Id] = field(default_factory=set)
+    attributes: dict[Id, Extra] = field(default_factory=dict)
     materials: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
 
 

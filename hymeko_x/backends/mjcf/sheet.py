@@ -112,8 +112,8 @@ class MjcfSheet(Struct):
         return self.mechanism.notations.get(key, _EMPTY) if self.from_mjcf else _EMPTY
 
     def extras(self, key: Id) -> tuple[Extra, ...]:
-        """The extras of an element that are written. Only meshes get some that another format's file did not have."""
-        return self.mechanism.extras.get(key, ()) if self.from_mjcf or key.kind == "mesh" else ()
+        """The extras of an element that are written. Only meshes and textures get some that another format's file did not have."""
+        return self.mechanism.extras.get(key, ()) if self.from_mjcf or key.kind in ("mesh", "texture") else ()
 
     def kept_attributes(self, key: Id, path: str = "") -> dict[str, str]:
         """The attributes that the IR cannot represent, of the element's node at this path."""
