@@ -66,10 +66,19 @@ class Block(Struct, eq=False):
 
 
 class TextFile(Struct, frozen=True):
-    """A file of an outline: the path that its ``Files`` found, and its bytes as the offsets count them."""
+    """A file of an outline: the path that its ``Files`` found, and its bytes as the offsets count them.
+
+    ``opening`` is what the author has in the place of the first ``read`` bytes, which a reader repaired.
+    """
 
     path: str
     data: bytes
+    opening: bytes = b""
+    read: int = 0
+
+    def authored(self, edited: bytes) -> bytes:
+        """The edited bytes with the author's own ones at their beginning, where no edit is."""
+        return self.opening + edited[self.read :]
 
 
 class Style(Struct, frozen=True):

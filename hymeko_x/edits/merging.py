@@ -29,7 +29,7 @@ def merged(own: Outline, before: Outline, after: Outline, replaced: Set[int] = f
     merge.remove()
     merge.edit()
     merge.write()
-    return {name: splices.result() for name, splices in merge.splices.items() if splices.edits}
+    return {name: own.files[name].authored(splices.result()) for name, splices in merge.splices.items() if splices.edits}
 
 
 class _Merge:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.source import Source
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import Document, Node
 
 STYLE = Style(">", "</{tag}>", rb"[ \t]*(?:<!--[^\n]*?-->[ \t]*)*", {b"'": b"&apos;"})
 TEXT = "text()"
@@ -27,7 +27,16 @@ def outline(source: Source, report: Report) -> Outline:
     """Where everything stands in an XML file that is all of its text. Raises: Refusal when it is no XML."""
     document = parse(source, report)
     root = block_of(document.root, document.data)
-    return Outline(root, {root.file: TextFile(source.name, document.data)}, root.file, STYLE)
+    return Outline(root, {root.file: text_file(source, document)}, root.file, STYLE)
+
+
+def text_file(source: Source, document: Document) -> TextFile:
+    """The file of a document; what stands before its root, such as a byte order mark, is as the author has it."""
+    read = document.root.start
+    content = document.data[read:]
+    if not source.data.endswith(content):
+        return TextFile(source.name, document.data)
+    return TextFile(source.name, document.data, source.data.removesuffix(content), read)
 
 
 def block_of(root: Node, data: bytes, others: Mapping[str, bytes] | None = None) -> Block:

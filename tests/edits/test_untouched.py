@@ -266,3 +266,14 @@ def test_schemas_of_a_prim_without_any_stand_behind_its_name(tmp_path: Path) -> 
     assert DAMPED in text
     lines = text.splitlines()
     assert [line for line in STAGE.splitlines() if line not in lines] == ['    def PhysicsRevoluteJoint "j"']
+
+
+@pytest.mark.parametrize("opening", ["\ufeff", '\ufeff<?xml version="1.0"?>\n', '\n<?xml version="1.0"?>\n'])
+@pytest.mark.unread("HX005")
+def test_what_stands_before_the_root_stays_as_it_is(opening: str, tmp_path: Path) -> None:
+    (tmp_path / "lamp.urdf").write_text(opening + LAMP)
+    hx.convert(tmp_path / "lamp.urdf", tmp_path / "lamp.json")
+    there = (tmp_path / "lamp.json").read_text()
+    (tmp_path / "lamp.json").write_text(there.replace('"size":[0.1,0.1,0.02]', '"size":[0.1,0.1,0.03]'))
+    hx.update(tmp_path / "lamp.urdf", tmp_path / "lamp.json")
+    assert (tmp_path / "lamp.urdf").read_text() == opening + LAMP.replace("0.02", "0.03")

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
 from hymeko_x.frontends.mjcf.expand import included_source
-from hymeko_x.outline import Outline, TextFile
+from hymeko_x.outline import Outline
 from hymeko_x.source import file_stem
-from hymeko_x.xml.outline import STYLE, block_of
+from hymeko_x.xml.outline import STYLE, block_of, text_file
 from hymeko_x.xml.parse import parse
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
+    from hymeko_x.outline import TextFile
     from hymeko_x.source import Source
     from hymeko_x.xml.tree import Node
 
@@ -26,7 +29,7 @@ def outline(source: Source, report: Report) -> Outline:
     Raises: Refusal when a file is no XML, or an included one cannot be read.
     """
     document = parse(source, report, deepest=None)
-    files = {source.name: TextFile(source.name, document.data)}
+    files = {source.name: text_file(source, document)}
     stack = [document.root]
     while stack:
         node = stack.pop()
@@ -51,6 +54,6 @@ def _included(node: Node, source: Source, report: Report, files: dict[str, TextF
             continue
         path, inner = included_source(child, source)
         document = parse(inner, report, deepest=None)
-        files[inner.name] = TextFile(path, document.data)
+        files[inner.name] = replace(text_file(inner, document), path=path)
         queue += reversed(document.root.children)
     return found

@@ -8,8 +8,8 @@ from msgspec.structs import replace
 
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Refusal
-from hymeko_x.outline import Outline, TextFile
-from hymeko_x.xml.outline import STYLE, block_of
+from hymeko_x.outline import Outline
+from hymeko_x.xml.outline import STYLE, block_of, text_file
 from hymeko_x.xml.parse import parse
 
 if TYPE_CHECKING:
@@ -24,13 +24,14 @@ def outline(source: Source, report: Report) -> Outline:
     """
     document = parse(source, report, deepest=None)
     root = block_of(document.root, document.data)
-    files = {source.name: TextFile(source.name, document.data)}
+    files = {source.name: text_file(source, document)}
     for path in source.files.opened if isinstance(source.files, DiskFiles) else ():
         try:
-            included = parse(replace(source, name=path, data=source.files.read(path)), report, deepest=None)
+            other = replace(source, name=path, data=source.files.read(path))
+            included = parse(other, report, deepest=None)
         except (Refusal, OSError):  # a list of values, or a picture
             continue
-        files[path] = TextFile(path, included.data)
+        files[path] = text_file(other, included)
         for child in block_of(included.root, included.data).children:
             root.add(child)
     return Outline(root, files, source.name, STYLE)
