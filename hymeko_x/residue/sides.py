@@ -13,6 +13,7 @@ from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.residue import Run, Sides
 from hymeko_x.residue.alike import without_inherited
+from hymeko_x.xml.unread import COMMENT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -179,10 +180,15 @@ def with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mech
 
 
 def _restored_extras(residue: Residue, image: Mechanism, there: set[Id]) -> dict[Id, tuple[Extra, ...]]:
+    """The extras of the image with those of the source. One that both had, and that was taken out of the image, stays out."""
     foreign: dict[Id, list[Extra]] = defaultdict(list)
-    for key, extra in residue.sides.foreign_extras:
-        foreign[key].append(extra)
-    extras = {key: unshared(found, foreign[key], as_written, without_inherited, as_meant)[0] for key, found in image.extras.items()}
-    for key, extra in residue.sides.extras:
-        extras.setdefault(key, []).append(extra)
-    return {key: tuple(found) for key, found in extras.items() if found and key in there}
+    own: dict[Id, list[Extra]] = defaultdict(list)
+    for table, rows in ((foreign, residue.sides.foreign_extras), (own, residue.sides.extras)):
+        for key, extra in rows:
+            table[key].append(extra)
+    restored: dict[Id, tuple[Extra, ...]] = {}
+    for key in dict.fromkeys([*image.extras, *own]):
+        left, gone = unshared(image.extras.get(key, ()), foreign[key], as_written, without_inherited, as_meant)
+        deleted = [extra for extra in gone if extra.format != COMMENT]  # programs that save a file leave comments out
+        restored[key] = (*left, *unshared(own[key], deleted, as_written, as_meant)[0])
+    return {key: found for key, found in restored.items() if found and key in there}

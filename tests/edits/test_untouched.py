@@ -277,3 +277,22 @@ def test_what_stands_before_the_root_stays_as_it_is(opening: str, tmp_path: Path
     (tmp_path / "lamp.json").write_text(there.replace('"size":[0.1,0.1,0.02]', '"size":[0.1,0.1,0.03]'))
     hx.update(tmp_path / "lamp.urdf", tmp_path / "lamp.json")
     assert (tmp_path / "lamp.urdf").read_text() == opening + LAMP.replace("0.02", "0.03")
+
+
+FRAGMENTS = """<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro">
+  <link name="a"/>
+  <gazebo reference="a">
+    <!-- rubber -->
+    <mu1>0.9</mu1>
+  </gazebo>
+  <gazebo reference="a">
+    <mu2>0.9</mu2>
+  </gazebo>
+</robot>
+"""
+
+
+def test_a_fragment_that_was_edited_takes_the_place_of_its_old_text_where_the_target_has_others_otherwise(tmp_path: Path) -> None:
+    """The fragment with a comment is another text in the xacro file."""
+    after, warnings = updated(tmp_path / "lamp.xacro", ("<mu2>0.9", "<mu2>0.7"), FRAGMENTS)
+    assert (after, warnings) == (FRAGMENTS.replace("<mu2>0.9", "<mu2>0.7"), [])
