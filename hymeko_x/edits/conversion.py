@@ -12,6 +12,7 @@ from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import is_idle, relevant
 from hymeko_x.diagnostics import Report
+from hymeko_x.edits.differences import aim, has_other_forms, is_lost_name, is_of_extra, is_telling, is_value_of_shape
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_assets, with_same_numbers
 from hymeko_x.edits.weights import with_computed_gains, with_least_masses, without_followed
@@ -31,7 +32,6 @@ from hymeko_x.source import PackageFiles
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Set
 
-    from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import JointView, Mechanism
     from hymeko_x.rewrite import Options
@@ -113,7 +113,7 @@ class Conversion:
             with_least_masses(self.edited, guess.image), self._first_image, guess.image, sources
         )
         if self._asked is None:
-            self._asked = frozenset(map(_aim, diff(guess.image, self.edited, TOLERANCE)))
+            self._asked = frozenset(map(aim, diff(guess.image, self.edited, TOLERANCE)))
         names = self._renames(guess.image)
         edited = without_followed(self._under(names, self._with_inertials(guess.image), guess.image), guess.image, self._bare_bodies())
         restored = restore(edited, residue, notes).mechanism
@@ -150,15 +150,15 @@ class Conversion:
         words[True] += [
             f"{old.kind} '{old.name}' is called '{new.name}'" for new, old in names.made.items() if self._is_called_anew(new, old)
         ]
-        return Left({*names.given, *names.given.values()}, words[False], words[True], [str(edit) for edit in rest if _is_telling(edit)])
+        return Left({*names.given, *names.given.values()}, words[False], words[True], [str(edit) for edit in rest if is_telling(edit)])
 
-    def unmet(self, known: Container[str]) -> Iterator[tuple[Id, str]]:
+    def unmet(self, known: Container[str], *, of_extras: bool) -> Iterator[tuple[Id, str]]:
         """What EDITED has and ORIGINAL, as it was converted last, does not have: by the element of ORIGINAL, in words.
 
         Both files are compared name by name, so that no way to see two robots as the same one hides an edit; only shapes without names,
         which may have another number, are found by what they are. It counts what EDITED was edited to have, and every other value of a
         shape that was not edited. Names that did not arrive, and what has several forms of one meaning, are reported by :meth:`left`,
-        whose edits are ``known``.
+        whose edits are ``known``. With ``of_extras`` only texts of EDITED's format count, which have one form.
         """
         assert self._used is not None
         image = self._used.image
@@ -167,13 +167,15 @@ class Conversion:
         touched = {element for element, _, _ in self._asked or ()}
         numbered = reordered_shapes(edited, image)
         rest = diff(image, rename(edited, numbered), _SINGLE)
-        left = frozenset(map(_aim, rest))
+        left = frozenset(map(aim, rest))
         for edit in diff(image, edited, _SINGLE):
-            is_there = edit.element.kind == "shape" and (numbered.get(edit.element, edit.element), *_aim(edit)[1:]) not in left
-            if _aim(edit) in (self._asked or ()) and not (_has_other_forms(edit) or is_idle(edit) or is_there):
+            is_there = edit.element.kind == "shape" and (numbered.get(edit.element, edit.element), *aim(edit)[1:]) not in left
+            if of_extras and not is_of_extra(edit):
+                continue
+            if aim(edit) in (self._asked or ()) and not (has_other_forms(edit) or is_idle(edit) or is_there):
                 yield self._homes.get(edit.element, edit.element), f"the edit did not arrive: {edit}"
-        for edit in rest:
-            if edit.element not in touched and _is_value_of_shape(edit) and str(edit) not in known:
+        for edit in () if of_extras else rest:
+            if edit.element not in touched and is_value_of_shape(edit) and str(edit) not in known:
                 words = f"it changed with the edits: {edit.element} {edit.field} is {edit.before}, and {edit.after} in the edited file"
                 yield self._homes.get(edit.element, edit.element), words
 
@@ -195,7 +197,7 @@ class Conversion:
         numbered = reordered_shapes(self.edited, self._used.image)
         back = {new: old for old, new in numbered.items()}
         found = diff(self._used.image, rename(self.edited, numbered), TOLERANCE)
-        return [f"{back.get(edit.element, edit.element)} is called {edit.after}" for edit in found if _is_lost_name(edit)]
+        return [f"{back.get(edit.element, edit.element)} is called {edit.after}" for edit in found if is_lost_name(edit)]
 
     def _is_made(self, new: Id, old: Id) -> bool:
         """Whether a name is one that a format made: of an element without one, or of one beside a link of its name."""
@@ -314,43 +316,6 @@ class Conversion:
         found = [f"--{name} {value}" for name, value in names.items() if value != given[name]]
         if found:
             self.report.note(codes.OPTIONS_FOUND, f"the file was converted with {' '.join(found)}, as far as can be seen")
-
-
-def _aim(edit: Difference) -> tuple[Id, str, str | None]:
-    """What an edit aims at, whatever stood there before it."""
-    return edit.element, edit.field, edit.after
-
-
-def _has_other_forms(edit: Difference) -> bool:
-    """Whether an edit is of what two equal robots have in several forms: the frames of a joint, a geom as a visual and a collision."""
-    if edit.element.kind == "shape":
-        return not edit.field
-    return edit.element.kind == "joint" and ".weight" in edit.field
-
-
-def _is_lost_name(edit: Difference) -> bool:
-    """Whether a shape has a name in EDITED alone."""
-    return edit.element.kind == "shape" and edit.field == "name" and edit.before == "none"
-
-
-def _is_value_of_shape(edit: Difference) -> bool:
-    """Whether a value of a shape differs, other than its name and what its mass follows from."""
-    return edit.element.kind == "shape" and edit.field not in ("", "name", "mass", "density") and None not in (edit.before, edit.after)
-
-
-def _is_telling(edit: Difference) -> bool:
-    """Whether a difference that is left is an edit, and not a value that one of two equal robots leaves to be computed."""
-    if None in (edit.before, edit.after):
-        return edit.element.kind in _WHOLE and not edit.field
-    if edit.element.kind == "shape" and edit.field in ("mass", "density"):
-        return False
-    return edit.element.kind in _GIVEN or not {"none", "[]"} & {edit.before, edit.after}
-
-
-_WHOLE = frozenset({"body", "joint", "shape", "actuator", "sensor", "camera", "light", "coupling", "loop", "tendon", "contact"})
-"""The kinds of elements that no format computes from others."""
-_GIVEN = frozenset({"joint", "actuator", "sensor", "camera", "light", "tendon"})
-"""The kinds of elements of which no format computes values."""
 
 
 def _is_beside(new: Id, old: Id) -> bool:

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, NamedTuple
 from msgspec import Struct
 from msgspec.structs import replace
 
-from hymeko_x import codes, formats, pipeline
+from hymeko_x import codes, pipeline
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import is_idle
 from hymeko_x.diagnostics import Origin, Refusal, Report, counted, listed, refuse
 from hymeko_x.edits.conversion import Conversion, new_assets
+from hymeko_x.edits.differences import is_given_again, is_inherited, is_weight
 from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
 from hymeko_x.edits.unnamed import unnamed_bodies, with_same_numbers
 from hymeko_x.ir.names import rename
@@ -139,7 +140,7 @@ def _round(original: Source, format: Format, conversion: Conversion, edited: Sou
     after = _without_rounding(before, after, {edit.element for edit in every})
     gone = _dropped(every, after, original, format)
     after = _without_inertials(before, after, {element for element, field in gone if field.partition(".")[0] == "inertial"})
-    derived = (_is_inherited, _is_weight, _is_given_again)
+    derived = (is_inherited, is_weight, is_given_again)
     dropped = [edit for edit in every if (str(edit.element), edit.field) in gone and not any(test(edit) for test in derived)]
     texts = text_with_edits(original, format, before, after, report) if len(dropped) < len(every) else Texts({}, {})
     lost = tuple(edit for edit in dropped if not (_is_hidden_material(edit, after) or is_idle(edit)))
@@ -157,7 +158,8 @@ def _report_left(found: _Round, conversion: Conversion, original: Source, format
         return
     known = {edit.element for edit in lost}
     left = [] if lost else found.left.edits
-    unmet = [words for element, words in conversion.unmet(left) if element not in known] if is_changed else [*conversion.lost_colours()]
+    unmet = [words for element, words in conversion.unmet(left, of_extras=not is_changed) if element not in known]
+    unmet += [] if is_changed else conversion.lost_colours()
     missing = [f"the edit did not arrive: {words}" for words in (*found.left.names, *left)]
     _report_missing([*dict.fromkeys([*missing, *unmet])], original, report)
     if conversion.computed:
@@ -242,16 +244,6 @@ def _without_unused(before: Mechanism, after: Mechanism) -> Mechanism:
     return replace(after.replace(without=gone), extras=extras) if gone else after
 
 
-def _is_weight(edit: Difference) -> bool:
-    """Whether an edit is of the mass of a shape, which is part of its body's inertial."""
-    return edit.element.kind == "shape" and edit.field in ("mass", "density")
-
-
-def _is_given_again(edit: Difference) -> bool:
-    """Whether an edit gives a shape a name that it had not, as where one shape of that name has become several."""
-    return edit.element.kind == "shape" and edit.field == "name" and edit.before in (None, "none")
-
-
 def _is_hidden_material(edit: Difference, after: Mechanism) -> bool:
     """Whether an edit is of a material without images that the own colours of its shapes hide, as a note of the writer reports.
 
@@ -269,12 +261,6 @@ def _is_hidden_material(edit: Difference, after: Mechanism) -> bool:
 
 def _has_own_colour(edge: RobotEdge | None) -> bool:
     return edge is not None and isinstance(edge.data, Shape) and edge.data.rgba is not None
-
-
-def _is_inherited(edit: Difference) -> bool:
-    """Whether an edit is one of classes alone, which the elements have in fields of their own."""
-    rows = [formats.loaded(row.inherited) for row in formats.FORMATS if row.inherited is not None and edit.field.startswith(f"{row.name} ")]
-    return any(function(text or "") == function("") for function in rows for text in (edit.after or edit.before,))
 
 
 def _with_new_assets(before: Mechanism, after: Mechanism, edited: Source) -> tuple[Mechanism, dict[str, bytes]]:

@@ -273,3 +273,24 @@ def test_a_body_without_mass_that_is_added_to_sdf_weighs_nothing(tmp_path: Path)
     hx.update(tmp_path / "r.sdf", tmp_path / "r.urdf")
     assert '    <link name="base"/>\n' in (tmp_path / "r.sdf").read_text()
     assert [body.mass for body in hx.load(tmp_path / "r.sdf").bodies.values()] == [1.0, 1e-10]
+
+
+SENSOR = """<robot name="r">
+  <link name="base"/>
+  <gazebo reference="base">
+    <sensor name="imu" type="imu"><always_on>true</always_on></sensor>
+  </gazebo>
+</robot>
+"""
+
+
+def test_an_edit_of_what_a_fragment_of_the_original_describes_is_reported_where_nothing_else_was_edited(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(SENSOR)
+    hx.convert(tmp_path / "r.urdf", tmp_path / "r.sdf")
+    (tmp_path / "r.sdf").write_text((tmp_path / "r.sdf").read_text().replace("true</always_on>", "false</always_on>"))
+    found = hx.update(tmp_path / "r.urdf", tmp_path / "r.sdf")
+    start = "the edit did not arrive: sensor 'imu' sdf content"
+    assert [row.message for row in found.report if row.code.id == "HX118"] == [
+        f"{start}: removed <always_on>true</always_on>",
+        f"{start}: added <always_on>false</always_on>",
+    ]
