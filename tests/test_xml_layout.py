@@ -47,6 +47,11 @@ def test_the_content_stays_and_a_second_time_changes_nothing(text: str, depth: i
     assert laid_out(found, depth) == found
 
 
+@given(elements(), st.integers(0, 3), st.integers(0, 3))
+def test_the_depth_at_which_a_text_stood_does_not_matter(text: str, before: int, depth: int) -> None:
+    assert laid_out(laid_out(text, before), depth) == laid_out(text, depth)
+
+
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [
@@ -54,6 +59,7 @@ def test_the_content_stays_and_a_second_time_changes_nothing(text: str, depth: i
         ('<a>\n<b x="1"/>\n      <c>1 2</c>\n</a >', '<a>\n    <b x="1"/>\n    <c>1 2</c>\n  </a>'),
         ("<a>\n    <b>\n      <c/>\n    </b>\n  </a>", "<a>\n    <b>\n      <c/>\n    </b>\n  </a>"),
         ("<a>\n    <b>\n    <c/>\n    </b>\n  </a>", "<a>\n    <b>\n      <c/>\n    </b>\n  </a>"),
+        ("<a>\n      <b>\n        <c/>\n      </b>\n    </a>", "<a>\n    <b>\n      <c/>\n    </b>\n  </a>"),
         ("<a>word\n<b/></a>", "<a>word\n<b/></a>"),
         ("<a>\n<!--note--></a>", "<a>\n    <!-- note -->\n  </a>"),
     ],

@@ -88,8 +88,9 @@ def losses_between(
     changed; ``leaves`` is in what their elements differ, if that is known; ``is_carried`` whether the file will carry what got lost.
     """
     tolerance = Tolerance(1e-12, format.precision, by_vector=True) if format.precision else TOLERANCE
-    is_held = in_fragments(mechanism, aligned)
-    kept = relevant(diff(mechanism, aligned, tolerance, leaves), mechanism, aligned, tolerance, is_held)
+    differences = diff(mechanism, aligned, tolerance, leaves)
+    is_held = in_fragments(differences, mechanism, aligned)
+    kept = relevant(differences, mechanism, aligned, tolerance, is_held)
     renamed = tuple(renamed)
     names = {difference.element: str(difference.after)[1:-1] for difference in renamed if difference.field == "name"}
     renamed = (difference for difference in renamed if not _is_number(difference, mechanism))

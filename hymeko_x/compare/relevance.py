@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 from hymeko_x import formats
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, numbers_weight, pose_weight
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import MESH_POINTS, Body, DofKind, Joint, Mesh, Mount, Sense, Shape, Stance
+from hymeko_x.ir.parts import MESH_POINTS, Body, DofKind, Joint, Layer, Material, Mesh, Mount, Sense, Shape, Stance
 from hymeko_x.ir.values import ZERO, X, Z, apply, compose, cross, inverse, rotate, rotation_angle
 from hymeko_x.rewrite.efforts import actuator_efforts
 from hymeko_x.rewrite.sites import is_link
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from hymeko_x.compare.diff import Difference, Tolerance
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge
-    from hymeko_x.ir.parts import Dof
+    from hymeko_x.ir.parts import Dof, Rgba
     from hymeko_x.ir.values import Pose, Vec3
 
 _AXIS = re.compile(r"dofs\[(\d+)\]\.axis")
@@ -38,16 +38,10 @@ _NO_NAME = "none"
 Judge = Callable[["Difference"], bool]
 
 
-def in_fragments(before: Mechanism, after: Mechanism) -> Judge:
-    """Whether a difference is in fragments of one of the robots, which only some programs read. They are read for the first difference."""
-    judges: list[Judge] = []
-
-    def is_held(difference: Difference) -> bool:
-        if not judges:
-            judges.extend(formats.loaded(row.held)(before, after) for row in formats.FORMATS if row.held is not None)
-        return any(judge(difference) for judge in judges)
-
-    return is_held
+def in_fragments(found: Collection[Difference], before: Mechanism, after: Mechanism) -> Judge:
+    """Whether one of the differences found is in fragments of one of the robots, which only some programs read."""
+    judges = [formats.loaded(row.held)(before, after) for row in formats.FORMATS if found and row.held is not None]
+    return lambda difference: any(judge(difference) for judge in judges)
 
 
 def relevant(
@@ -57,14 +51,15 @@ def relevant(
 
     No loss is: another axis of a ball or a free joint, which has none; another mass or density of a shape without one, on the world or
     on a body whose mass and tensor are given; a centre of mass and a tensor that HyMeKo text leaves to the shapes; other frames of a joint
-    that moves its body alike; an effort limit that is what the actuators of the source can exert; a frame that is
-    where the body of its name is; an extra that holds nothing; a pose that is a keyframe; a sensor, a camera or a text that is held in a
-    fragment, as ``is_held`` says.
+    that moves its body alike; the colour of a material on the shape itself; an effort limit that is what the actuators of the source can
+    exert; a frame that is where the body of its name is; an extra that holds nothing; a pose that is a keyframe; a sensor, a camera or a
+    text that is held in a fragment, as ``is_held`` says.
     What an author wrote counts, used or not.
     """
     alike: dict[Id, bool] = {}
     native = formats.native_format(before)
     efforts = actuator_efforts(before)
+    colours = _colours(before)
     described = {*_links(before, after), *_keyframes(before, after, tolerance)}
     if native is None or native.held is None:
         described |= {*_in_fragments(before, after)}
@@ -78,6 +73,8 @@ def relevant(
         if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _needs_no_weight(before, key, difference.field):
             continue
         if native is None and _is_weight_of_shapes(before, difference):
+            continue
+        if colours and key.kind == "shape" and _has_colour_of_material(before, after, difference, colours):
             continue
         if efforts and _is_effort_of_actuators(difference, after, efforts, tolerance):
             continue
@@ -187,6 +184,24 @@ def _is_weight_of_shapes(mechanism: Mechanism, difference: Difference) -> bool:
         and difference.field.startswith(("inertial.com", "inertial.tensor"))
         and bool(mechanism.shapes.get(difference.element))
     )
+
+
+def _colours(mechanism: Mechanism) -> dict[Id, Rgba | None]:
+    """The colours of the materials that have only that and a name."""
+    with_image = {arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs}
+    plain = {key: material for key, material in mechanism.vertices(Material) if key not in with_image}
+    return {key: material.rgba for key, material in plain.items() if material == Material(material.name, material.rgba)}
+
+
+def _has_colour_of_material(before: Mechanism, after: Mechanism, difference: Difference, colours: Mapping[Id, Rgba | None]) -> bool:
+    """Whether a shape has itself the colour that its material gave it, and so is seen as it was."""
+    edge, now = before.graph.edges.get(difference.element), after.graph.edges.get(difference.element)
+    if edge is None or now is None or not (isinstance(edge.data, Shape) and isinstance(now.data, Shape)) or edge.data.rgba is not None:
+        return False
+    places = {f"[{number}]": arc.target for number, arc in enumerate(edge.arcs) if arc.target.kind == "material"}
+    is_alone = len(now.arcs) == len(edge.arcs) - len(places)
+    known = [colours.get(key) for key in places.values()]
+    return difference.field in ("rgba", *places) and is_alone and known == [now.data.rgba] and known != [None]
 
 
 def _is_idle_axis(mechanism: Mechanism, difference: Difference) -> bool:

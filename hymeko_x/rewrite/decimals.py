@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import Id, Mechanism
 
-_LONG = re.compile(rb"(?<![\w.])-?(?:(?=[\d.]{16})\d+(?:\.\d+)?(?:e-?\d+)?|\d+(?:\.\d+)?e-\d\d+)(?![\w.])")
+_LONG = re.compile(rb"(?<![\w.])-?(?:(?=[\d.]{16})\d+(?:\.\d+)?(?:e-?\d+)?|\d+(?:\.\d+)?e-(?:1[1-9]|[2-9]\d|\d{3}))(?![\w.])")
 """Numbers with so many digits, or so close to zero, that they may be computed."""
 _BLANKS = bytes(code if code in b"0123456789.-e" else 32 for code in range(256))
 """The characters of numbers, and blanks for all others."""

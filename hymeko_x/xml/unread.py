@@ -70,12 +70,15 @@ class Unread:
         stack = [node]
         while stack:
             member = stack.pop()
-            taken = [child for child in member.children if child.taken] if member.children else member.children
-            stack += taken
-            if len(taken) < len(member.children):
+            is_whole = True
+            for child in member.children:
+                if not child.taken:
+                    is_whole = False
+                elif child.children or child.attributes or child.text is not None:  # nothing is unread in the others, which are the most
+                    stack.append(child)
+            if not is_whole:
                 with_unread_children.append(member)
-                self._keep(member)
-            elif member.attributes or member.text is not None:
+            if not is_whole or member.attributes or member.text is not None:
                 self._keep(member)
         return with_unread_children
 

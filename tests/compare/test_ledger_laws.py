@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+import hymeko_x as hx
 from hymeko_x import formats, pipeline
 from hymeko_x.compare import ledger
 from hymeko_x.compare.diff import diff
@@ -18,6 +19,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import WORLD, Extra, Id, Mechanism, RobotEdge, joint_edge, shape_edge
+from hymeko_x.ir.parts import Rgba
 from hymeko_x.ir.values import Pose, Vec3, X, Y, Z, compose, inverse, rotate, scaled
 from hymeko_x.residue import Alignment
 from hymeko_x.residue.realign import alignment_differences
@@ -271,3 +273,22 @@ def test_a_mesh_that_is_called_after_its_file_has_no_name_to_lose(uri: str | Non
     key, other = Id("mesh", "hip#2"), Id("mesh", "visual")
     before, after = (Mechanism("r", Hypergraph({key: parts.Mesh(each, vertices=(0.0,) * 9)})) for each in (uri, None))
     assert [field for _, field in _told(before, after, Alignment(((other, key),)))] == told
+
+
+@pytest.mark.parametrize(
+    ("material", "own", "told"),
+    [
+        ('<color rgba="1 0 0 1"/>', None, []),
+        ('<color rgba="1 0 0 1"/>', (0.0, 1.0, 0.0, 1.0), ["[1]", "rgba"]),
+        ('<color rgba="1 0 0 1"/><texture filename="red.png"/>', None, ["[1]", "rgba"]),
+    ],
+    ids=["the same", "another colour", "an image"],
+)
+def test_a_shape_with_the_colour_that_its_material_gave_it_lost_nothing(material: str, own: Rgba | None, told: list[str]) -> None:
+    shape = f'<visual><geometry><sphere radius="1"/></geometry><material name="red">{material}</material></visual>'
+    before = hx.loads(f'<robot name="r"><link name="a">{shape}</link></robot>', "urdf").mechanism
+    (view,) = before.every_shape()
+    edge = before.graph.edges[view.id]
+    coloured = replace(edge, data=replace(view.shape, rgba=own or (1.0, 0.0, 0.0, 1.0)), arcs=edge.arcs[:1])
+    after = before.replace(edges={view.id: coloured})
+    assert sorted(found.field for found in relevant(diff(before, after), before, after, ledger.TOLERANCE)) == told

@@ -56,6 +56,9 @@ class Frames(Struct):
 
     def relative(self, frame: Id, base: Id) -> Pose:
         """The pose of a frame in another one: numbers of the file as they are, computed ones without noise."""
+        direct = self.given.get(frame)
+        if direct is not None and direct[0] == base:
+            return direct[1]
         near = self._up(frame, base)
         if near is None:
             back = self._up(base, frame)

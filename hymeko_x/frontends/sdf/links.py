@@ -74,7 +74,7 @@ def _read_inertial(link: Node, key: Id, model: Model, builder: SdfBuilder) -> In
 
 def is_auto(node: Node, builder: SdfBuilder) -> bool:
     """Whether the inertial of a link comes from its collisions, which the element that stays as written then says."""
-    return builder.version_of(node) >= words.minor(words.VERSION_OF_AUTO) and node.attributes.get("auto", "").lower() in ("true", "1")
+    return node.attributes.get("auto", "").lower() in ("true", "1") and builder.version_of(node) >= words.minor(words.VERSION_OF_AUTO)
 
 
 def _density(link: Node, key: Id, builder: SdfBuilder) -> float | None:
