@@ -52,9 +52,9 @@ class DiskFiles(Struct, frozen=True, dict=True):
     def find(self, uri: str) -> str | None:
         """The path of the file that ``uri`` names, or None.
 
-        A package is looked for in ``packages``, then in the search path, then upwards from ``base``, nearest first: a
-        folder whose `package.xml` bears the name, and a folder of that name above or beside. One without a name (``package:///a.stl``)
-        is ``base`` or a folder above. A file in a package of USD is
+        A package is looked for in ``packages``, then in the search path, then upwards from ``base``, nearest first: a folder whose
+        `package.xml` bears the name, a folder of that name above or beside, and a folder whose name is a form of it
+        (:meth:`guess_package`). One without a name (``package:///a.stl``) is ``base`` or a folder above. A file in a package of USD is
         named as there: ``robot.usdz[textures/a.png]``; another archive is like a folder: ``robot.mjz/meshes/a.stl``.
         """
         if (packed := _PACKED.fullmatch(uri)) is not None:
@@ -101,9 +101,8 @@ class DiskFiles(Struct, frozen=True, dict=True):
 
     def guess_package(self, name: str, beside: str = "") -> str | None:
         """The nearest folder above or beside that bears a shorter or longer form of the name, word by word, or None."""
-        words = _words(name)
-        near = (folder for files in self._standpoints(beside) for folder in files._neighbourhood())
-        return next((str(folder) for folder in near if _is_form(_words(folder.name), words) and self._may_enter(folder)), None)
+        near = (folder for files in self._standpoints(beside) for folder in files._forms_of(name))
+        return next((str(folder) for folder in near if self._may_enter(folder)), None)
 
     def match(self, pattern: str) -> list[str]:
         """The files that a path with wildcards (`*`, `?`, `[a-z]`) in at most four of its parts names, sorted."""
@@ -142,6 +141,18 @@ class DiskFiles(Struct, frozen=True, dict=True):
         """Every folder above the description, nearest first, each followed by the folders in it."""
         for folder in self._upwards:
             yield from chain((folder,), (folder / name for name in _names_in(folder)))
+
+    def _forms_of(self, name: str) -> list[Path]:
+        """The folders near the description, nearest first, that bear a shorter or longer form of a name, word by word."""
+        if name not in self._forms:
+            words = _words(name)
+            self._forms[name] = [folder for folder in self._neighbourhood() if _is_form(_words(folder.name), words)]
+        return self._forms[name]
+
+    @cached_property
+    def _forms(self) -> dict[str, list[Path]]:
+        """The folders that were found so far, by the name."""
+        return {}
 
     def _may_enter(self, folder: Path) -> bool:
         return folder.is_dir() and self._is_inside(folder)
@@ -184,6 +195,7 @@ class DiskFiles(Struct, frozen=True, dict=True):
             if name in names:
                 yield folder
             yield folder / name
+        yield from self._forms_of(name)
 
     @cached_property
     def _named_upwards(self) -> tuple[tuple[Path, tuple[str, str | None]], ...]:

@@ -70,6 +70,17 @@ def test_a_package_is_found_by_the_name_of_a_folder_above_or_beside(tmp_path: Pa
     assert files.find("package://hand_description/meshes/hand.stl") == str(beside)
 
 
+def test_a_package_that_is_not_there_is_the_folder_with_a_form_of_its_name_that_has_the_file(tmp_path: Path) -> None:
+    put(tmp_path / "arm/meshes/hand.stl")
+    mesh = put(tmp_path / "arm_kr6/meshes/arm.stl")
+    files = DiskFiles(tmp_path / "arm_kr6/urdf")
+    assert files.find("package://arm_kr6_support/meshes/arm.stl") == str(mesh)
+    assert files.find("package://arm_kr6_support/meshes/gone.stl") is None
+    assert files.find("package://arm_kr16_support/meshes/arm.stl") is None
+    named = put(tmp_path / "arm_kr6_support/meshes/arm.stl")
+    assert DiskFiles(tmp_path / "arm_kr6/urdf").find("package://arm_kr6_support/meshes/arm.stl") == str(named)
+
+
 def test_the_nearest_of_two_packages_with_one_name_wins_and_the_farther_one_fills_gaps(tmp_path: Path) -> None:
     near = put(tmp_path / "p/inner/p/mesh.stl")
     put(tmp_path / "p/mesh.stl")
