@@ -27,5 +27,6 @@ class Feature(Enum):
     TIED_TENDONS = "couplings of tendons"
     LOOPS = "loops"
     HELD_BASES = "free bases that a closure holds"
+    SLIDING_LOOPS = "closures that leave a slide free"
     OPEN_LOOPS = "closures that are open in the zero pose"
     CURVES = "couplings that are no straight line of one leader"

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import pytest
 
 import hymeko_x as hx
-from hymeko_x.diagnostics import Report
 from hymeko_x.ir.parts import Body
 from tests.sdf.samples import AXIS, SAMPLES, TWO, joint, model
 
@@ -60,11 +59,16 @@ def test_it_is_converted(issue: str, tmp_path: Path) -> None:
     assert verdict.is_same, [*verdict.failed, verdict.reason]
 
 
-def test_gz_mujoco_9_a_loop_that_a_slide_closes_is_named_and_left_out() -> None:
+def test_gz_mujoco_9_a_loop_that_a_slide_closes_is_named_and_left_out(tmp_path: Path) -> None:
     """MuJoCo has no constraint that leaves one direction free; docs/mapping/mjcf.md has the measurements."""
-    report = Report()
-    hx.dumps(hx.loads(SAMPLES["a loop"].replace('type="revolute"', 'type="prismatic"'), "sdf"), "mjcf", report=report)
+    original, there = tmp_path / "in.sdf", tmp_path / "m.xml"
+    original.write_text(SAMPLES["a loop"].replace('type="revolute"', 'type="prismatic"'), "utf-8")
+    report = hx.convert(original, there).report
     assert "loop 'l' closes a loop by a slide, for which there is no closure; it is left out" in [line.message for line in report]
+    verdict = hx.verify(original, there, samples=10)
+    assert verdict.is_same, verdict.failed
+    assert [(gap.format, gap.quantity, gap.count) for gap in verdict.gaps] == [("mjcf", "closures that leave a slide free", 1)]
+    assert not hx.verify(there, original, samples=10).is_same
 
 
 def test_gz_usd_33_a_joint_without_an_actuator_has_no_drive() -> None:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.verdict import Check
 
+_SLIDING = ("slide", "cylinder", "other")
+"""The kinds of closures along which the two bodies may slide, or move in several ways."""
 _OPEN = 2e-9
 """In m: a closure whose ends are this far apart is open; nearer ones are within what the check of closures allows."""
 
@@ -72,7 +74,8 @@ def _without_open_ones(pair: Pair, loops: list[LoopPair]) -> list[LoopPair]:
 def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
     """Closures by name, else by the two bodies that they join; and words about those without a counterpart.
 
-    None where the second robot's format has none: trees are then compared, and a gap names the closures.
+    None where the second robot's format has none: trees are then compared, and a gap names the closures, as it does those that leave a
+    slide free where the format has none of these.
     """
     if Feature.LOOPS not in pair.b.features:
         labels = [f"'{loop.name}'" if loop.name else f"between {_ends_of(pair.a, loop)}" for loop in pair.a.loops]
@@ -83,8 +86,12 @@ def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
     waiting = list(_with_hinges(pair.b.loops, pair.a.loops, there))
     pairs: list[LoopPair] = []
     findings: list[str] = []
+    sliding: list[str] = []
     for loop in _with_hinges(pair.a.loops, pair.b.loops, back):
         other = _counterpart(loop, waiting, back)
+        if other is None and loop.kind in _SLIDING and Feature.SLIDING_LOOPS not in pair.b.features:
+            sliding.append(_loop_label(pair.a, loop))
+            continue
         if other is None:
             findings.append(f"{_loop_label(pair.a, loop)} is missing")
             continue
@@ -97,6 +104,7 @@ def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
         else:
             pairs.append((loop, other, ends[0] != loop.body_a))
     findings += [f"loop '{loop.name or loop.kind}' is new" for loop in waiting]
+    pair.add_gap(pair.b, Feature.SLIDING_LOOPS, sliding)
     return pairs, findings
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.readers.lookup import Lookup
 
-FEATURES = frozenset(Feature) - {Feature.VELOCITY_LIMITS, Feature.FIXED_JOINT_NAMES, Feature.FLAT_COLLISIONS}
+FEATURES = frozenset(Feature) - {Feature.VELOCITY_LIMITS, Feature.FIXED_JOINT_NAMES, Feature.FLAT_COLLISIONS, Feature.SLIDING_LOOPS}
 
 _KINDS = {
     int(mujoco.mjtJoint.mjJNT_FREE): Kind.FREE,

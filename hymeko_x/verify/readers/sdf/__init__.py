@@ -52,7 +52,12 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.readers.lookup import Lookup
 
-FEATURES = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.POSITION_LIMITS})
+FEATURES = frozenset(
+    {
+        *(Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.POSITION_LIMITS),
+        *(Feature.LOOPS, Feature.SLIDING_LOOPS),
+    }
+)
 _SHAPES = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FLAT_COLLISIONS})
 _LIMITS = (Feature.POSITION_LIMITS, Feature.VELOCITY_LIMITS)
 UNREAD = _SHAPES | {Feature.FRICTION, Feature.EFFORT_LIMITS, Feature.SPRINGS, Feature.REFS, Feature.SENSORS}

@@ -40,6 +40,7 @@ FEATURES = frozenset(Feature) - {
     Feature.TENDONS,
     Feature.TIED_TENDONS,
     Feature.LOOPS,
+    Feature.SLIDING_LOOPS,
     Feature.OPEN_LOOPS,
     Feature.CURVES,
 }

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 FEATURES = frozenset(
     {
         *(Feature.POSITION_LIMITS, Feature.VISUALS, Feature.COLLISIONS, Feature.FLAT_COLLISIONS, Feature.FIXED_JOINT_NAMES),
-        *(Feature.LOOPS, Feature.HELD_BASES, Feature.OPEN_LOOPS, Feature.CURVES, Feature.TENDONS),
+        *(Feature.LOOPS, Feature.SLIDING_LOOPS, Feature.HELD_BASES, Feature.OPEN_LOOPS, Feature.CURVES, Feature.TENDONS),
     }
 )
 UNREPRESENTED = frozenset({(Feature.POSITION_LIMITS, Kind.BALL)})
