@@ -32,6 +32,16 @@ def test_a_bare_name_is_that_of_a_model_in_the_resource_path(tmp_path: Path) -> 
     assert hx.load(tmp_path / "w.sdf", search_path=(tmp_path / "models",)).mechanism.name == "p"
 
 
+TWO_MODELS = """<sdf version="1.9"><world name="w"><model name="a"><link name="l"/></model><model name="b"><link name="l"/></model>
+</world></sdf>"""
+
+
+def test_each_model_of_a_world_stands_once_in_the_layout() -> None:
+    robot = hx.loads(TWO_MODELS, "sdf").mechanism
+    assert len(set(robot.layout)) == len(robot.layout)
+    assert hx.loads(hx.dumps(robot, "json"), "json").mechanism.layout == robot.layout
+
+
 STATIC = """<sdf version="1.9"><model name="m"><static>true</static><link name="a"/><link name="b"/>
 <joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint></model></sdf>"""
 

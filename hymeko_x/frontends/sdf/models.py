@@ -89,7 +89,8 @@ def register_content(model: Model, builder: SdfBuilder) -> None:
                 builder.vertices[key] = Body()
             elif kind == "frame":
                 builder.vertices[key] = Frame()
-    builder.layout += [child.owner for child in model.node.children if child.owner is not None]
+    inner = [child for child in model.node.children if child.tag != "model" or model.frame != WORLD]  # those of the world stand there first
+    builder.layout += [child.owner for child in inner if child.owner is not None]
 
 
 def name_from_outside(model: Model, builder: SdfBuilder) -> None:
