@@ -62,6 +62,7 @@ def test_a_mistyped_verb_is_a_usage_error_with_the_nearest_one(capsys: pytest.Ca
         (["dh"], "dh: arguments are required: FILE"),
         (["fmt", "arm.urdf"], "fmt: it is for HyMeKo text, and arm.urdf is urdf; `hymeko-x import arm.urdf` prints it as HyMeKo"),
         (["diff", "a", "b", "c"], "diff: there are more words than it takes: c"),
+        (["convert", "a", "b", "--keep", "inside"], "convert: there are more words than it takes: inside; did you mean '--keep=inside'?"),
     ],
 )
 def test_a_mistake_in_the_options_costs_one_line(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -38,9 +38,12 @@ class Parser(argparse.ArgumentParser):
     def _unknown(self, words: list[str]) -> str:
         option = next((word.partition("=")[0] for word in words if word.startswith("-")), None)
         if option is None:
-            return f"there are more words than it takes: {' '.join(words)}"
-        near = _nearest(option, self._options())
-        return f"there is no option '{option}'" + (f"; did you mean '{near}'?" if near else "")
+            near = next((known for known in self._options() if known.partition("=")[2] in words), None)
+            problem = f"there are more words than it takes: {' '.join(words)}"
+        else:
+            near = _nearest(option, self._options())
+            problem = f"there is no option '{option}'"
+        return problem + (f"; did you mean '{near}'?" if near else "")
 
     def _options(self) -> Iterator[str]:
         """Every option of this parser and of those of its actions."""
