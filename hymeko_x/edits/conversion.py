@@ -12,7 +12,7 @@ from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import is_idle, relevant
 from hymeko_x.diagnostics import Report
-from hymeko_x.edits.differences import aim, has_other_forms, is_lost_name, is_of_extra, is_telling, is_value_of_shape
+from hymeko_x.edits.differences import aim, has_other_forms, is_lost_name, is_of_asset, is_of_extra, is_telling, is_value_of_shape
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_assets, with_same_numbers
 from hymeko_x.edits.weights import with_computed_gains, with_least_masses, without_followed
@@ -58,17 +58,21 @@ class Guess(NamedTuple):
 
 
 class Left(NamedTuple):
-    """The edits that did not arrive, in words; ``made_names`` are of elements whose names the format of ORIGINAL makes."""
+    """The edits that did not arrive, in words; ``made_names`` are of elements whose names the format of ORIGINAL makes.
+
+    ``differences`` is in how much the robots differ, assets apart, whether that tells of an edit or not.
+    """
 
     renamed: Set[Id]
     names: list[str]
     made_names: list[str]
     edits: list[str]
+    differences: int
 
     @property
-    def number(self) -> int:
-        """How many there are."""
-        return len(self.names) + len(self.made_names) + len(self.edits)
+    def distance(self) -> tuple[int, int]:
+        """How far ORIGINAL is from what was edited: how many edits are left, and then the other differences."""
+        return len(self.names) + len(self.made_names) + len(self.edits), self.differences
 
 
 class Conversion:
@@ -143,14 +147,16 @@ class Conversion:
         names = self._renames(self._used.image)
         edited = self._under(names, self.edited, self._used.image)
         image = align(self._used.image, edited)[1]
-        rest = relevant(diff(image, edited, _SINGLE), image, edited, _SINGLE)
+        found = diff(image, edited, _SINGLE)
+        rest = relevant(found, image, edited, _SINGLE)
         words: dict[bool, list[str]] = {True: [], False: []}
         for new, old in names.given.items():
             words[self._is_made(new, old)].append(f"{old.kind} '{old.name}' is called '{new.name}'")
         words[True] += [
             f"{old.kind} '{old.name}' is called '{new.name}'" for new, old in names.made.items() if self._is_called_anew(new, old)
         ]
-        return Left({*names.given, *names.given.values()}, words[False], words[True], [str(edit) for edit in rest if is_telling(edit)])
+        edits = [str(edit) for edit in rest if is_telling(edit)]
+        return Left({*names.given, *names.given.values()}, words[False], words[True], edits, sum(not is_of_asset(edit) for edit in found))
 
     def unmet(self, known: Container[str], *, of_extras: bool) -> Iterator[tuple[Id, str]]:
         """What EDITED has and ORIGINAL, as it was converted last, does not have: by the element of ORIGINAL, in words.

@@ -31,9 +31,14 @@ def is_of_extra(edit: Difference) -> bool:
     """
     family, gap, _ = edit.field.partition(" ")
     row = next((row for row in formats.FORMATS if row.name == family), None)
-    if not gap or row is None or edit.element.kind in _ASSETS:
+    if not gap or row is None or is_of_asset(edit):
         return False
     return edit.element != ROOT or not (edit.after is None or edit.after.startswith(row.class_elements))
+
+
+def is_of_asset(edit: Difference) -> bool:
+    """Whether an edit is of a mesh, a material or an image, which a file may list without a use."""
+    return edit.element.kind in _ASSETS
 
 
 def is_lost_name(edit: Difference) -> bool:

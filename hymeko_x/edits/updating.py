@@ -117,7 +117,7 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
             later = _round(source, format, conversion, edited, Report())
         except Refusal as error:
             raise _broken(original, error) from error
-        if changed and later.left.number >= found.left.number:
+        if changed and later.left.distance >= found.left.distance:
             break
         found.texts.report_printed(original, report)
         changed, beside, found = new, new_beside, later

@@ -105,7 +105,7 @@ def _frame_tag(key: Id, scope: str, world: Id | None, sheet: SdfSheet) -> Tag:
     if own is not None and (named is not None or not own):
         tag.attributes["attached_to"] = own
         base = named or model
-    elif (own is not None or not sheet.from_sdf) and body != WORLD:
+    elif body != WORLD and (own is not None or not sheet.from_sdf or body != sheet.places.body_of(model)):
         tag.attributes["attached_to"] = sheet.places.name(body, scope)
         base = body
     sheet.add_pose(tag, key, scope, base or model)
