@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x.ir.decimals import shortest_of
 from hymeko_x.ir.graph import Edge
+from hymeko_x.ir.parts import Role, Shape
 from hymeko_x.ir.values import Pose, Written
 from hymeko_x.ir.written import between_ends, length_of
 from hymeko_x.residue.alike import is_alike
@@ -20,6 +21,8 @@ _ROUNDING = 1e-9
 """How far a point may be from where its place has it, in m, or as a part of its largest coordinate."""
 ARCS = ("arcs",)
 """The path of all arcs of an edge."""
+_COLOUR = ("data", "rgba")
+"""The path of a shape's own colour."""
 
 
 def with_edited_weights(part: object, change: Change) -> Change:
@@ -42,6 +45,18 @@ def with_edited_weights(part: object, change: Change) -> Change:
             return change
         arcs.append(replace(arc, weight=now.weight))
     return change if edited else change._replace(there=part.arcs, value=tuple(arcs))
+
+
+def without_lost_material(part: object, changes: list[Change], edited: list[Change]) -> list[Change]:
+    """The changes of a part. A visible shape that lost the colour which the image had of its material does not get that material."""
+    is_bare = isinstance(part, Edge) and isinstance(part.data, Shape) and part.data.rgba is None and part.data.role is not Role.COLLISION
+    if not is_bare or all(change.path != _COLOUR for change in edited):
+        return changes
+    return [change._replace(value=_without_material(change.value)) if change.path == ARCS else change for change in changes]
+
+
+def _without_material(arcs: object) -> object:
+    return tuple([arc for arc in arcs if arc.role != "material"]) if isinstance(arcs, tuple) else arcs
 
 
 def with_own_ends(edge: RobotEdge) -> RobotEdge:

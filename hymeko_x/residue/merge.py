@@ -17,7 +17,7 @@ from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Shape, Texture
 from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.alike import URI, holds, is_alike, is_moved, without_colour
-from hymeko_x.residue.arcs import with_edited_weights, with_own_ends
+from hymeko_x.residue.arcs import with_edited_weights, with_own_ends, without_lost_material
 from hymeko_x.residue.landmarks import renamed_since
 from hymeko_x.residue.parts import GEOMETRY, broken, capsules_of, parts_of
 from hymeko_x.residue.realign import realign, with_new_names, with_old_names
@@ -133,7 +133,7 @@ class _Merge:
         if edited:
             self._note(key, f"was edited: {', '.join(dict.fromkeys(_path_text(change.path) for change in edited))} stays as it is now")
         barred = _barred(part, changes, edited) if edited else set()
-        valid = [change for change in changes if change.path not in barred]
+        valid = without_lost_material(part, [change for change in changes if change.path not in barred], edited)
         changed = _with_changes(part, valid)
         if changed is not None:
             self.values += len(valid)

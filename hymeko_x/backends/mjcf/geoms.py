@@ -44,7 +44,7 @@ def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     values: dict[str, object] = {
         "place": between_its_ends(place) if "fromto" in base else place,
         "mesh": mesh,
-        "material": None if view.material is None else sheet.reference(Arc(view.material)),
+        "material": sheet.reference(Arc(view.material)) if view.material is not None else "" if base.get("material") else None,
         "rgba": shape.rgba or (),
         "mass": shape.mass,
         "density": WATER if _is_of_water(sheet, view, base) else shape.density,
