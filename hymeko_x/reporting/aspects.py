@@ -25,7 +25,7 @@ class Aspect(Enum):
     NAME = "name"
     """A name, or the path of a file."""
     APPEARANCE = "appearance"
-    """Materials, textures, colours, lights, the size at which a frame is drawn."""
+    """Materials, textures, colours, lights, what is seen of a mesh, the size at which a frame is drawn."""
     TEXT = "text"
     """Comments and declarations."""
 
@@ -35,10 +35,14 @@ _COMPUTED = ("mass", "density")
 """Of a shape: from these an engine computes the inertia of its body, which is written out."""
 _DRAWN = ("material", "texture", "layer", "subset", "light")
 _DRAWN_FIELDS = ("rgba", "width")
+_DRAWN_CONTENT = ("texture coordinates", "places in the image", "normals", "turn of normals")
+"""Of a mesh: what is seen of it, and nothing touches."""
 _DRAWN_EXTRAS = re.compile(r"@(rgba|group|material|type)$")
 _DECLARATION = re.compile(r"@xmlns\b|text\(\)$")
 _MATERIAL = re.compile(r"(?:\S+ )?material '[^']*'(?: as 'material')?")
 """An arc to a material, or the material to which it leads; a shape that has one is more than that."""
+_ONLY_SEEN = re.compile(r"mesh\(|shape\(.*, role visual, ")
+"""The text of a mesh, or of a shape that nothing touches: one that is new is a piece of what was there."""
 
 
 def aspect_of(loss: Loss) -> Aspect:
@@ -52,12 +56,14 @@ def aspect_of(loss: Loss) -> Aspect:
         return Aspect.APPEARANCE
     if is_extra(loss):
         return Aspect.SETTINGS
+    if loss.before is None and not field and _ONLY_SEEN.match(loss.after or ""):
+        return Aspect.FORM
     if field in _FORMS or loss.before == "none" or ((kind, field) == ("shape", "role") and loss.before == "both"):
         return Aspect.FORM
     last = field.rpartition(".")[2]
     if last == "name" or (last == "uri" and kind == "mesh"):
         return Aspect.NAME
-    if last in _DRAWN_FIELDS and kind in ("shape", "tendon"):
+    if (last in _DRAWN_FIELDS and kind in ("shape", "tendon")) or (last in _DRAWN_CONTENT and kind == "mesh"):
         return Aspect.APPEARANCE
     is_computed = (kind == "shape" and field in _COMPUTED) or (kind == "mesh" and field in MESH_POINTS)
     return Aspect.FORM if is_computed else Aspect.PHYSICS

@@ -57,7 +57,7 @@ def test_a_walker_loses_its_loops_springs_and_motors_in_urdf(folder: Path, capsy
         "approximated: 2 shapes by other shapes: 'left-foot/shape', 'right-foot/shape'",
         "approximated: kind of 2 joints (ball -> hinge): 'left-achilles-rod', 'right-achilles-rod'",
         "approximated: connection of 2 joints: 'left-achilles-rod', 'right-achilles-rod'",
-        "no physics: 4 joints renamed ('left-hip-roll' -> no name); 4 joints, 2 shapes, 1 mesh described in another form",
+        "no physics: 4 joints renamed ('left-hip-roll' -> no name); 8 shapes, 4 joints, 1 mesh described in another form",
         "note[HX101]: effort limits are what the actuators can exert: 'left-hip' 112.5, 'left-hip' 112.5, 'left-hip-pitch' 112.5,"
         " 'left-shin' 112.5, ...",
         "IN:6: note[HX101]: joint 'left-hip' has dofs or a frame that the format cannot represent; it is written as a chain of 2 joints"
@@ -110,7 +110,7 @@ def test_a_humanoid_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest
         "dropped: 6 cameras: 'obs_hands', 'overshoulder', ...",
         "approximated: 1 shape by other shapes: 'world/shape'",
         "dropped: 95 settings that only mjcf has: <compiler>, <default>, contype, conaffinity, ...",
-        "no physics: 3 meshes renamed ('torso_waist_yaw' -> 'waist_yaw'); 63 shapes, 1 body described in another form;"
+        "no physics: 3 meshes renamed ('torso_waist_yaw' -> 'waist_yaw'); 64 shapes, 1 body described in another form;"
         " appearance of 16 frames, 5 materials, 3 textures, 2 more",
         "note[HX101]: effort limits are what the actuators can exert: 'torso_waist_yaw' 20000, 'torso_waist_pitch' 20000,"
         " 'torso_waist_roll' 20000, 'head_yaw' 20000, ...",
@@ -188,6 +188,12 @@ def loss(element: str, field: str, before: str | None, after: str | None, fate: 
         (loss("shape 'a'", "role", "both", "visual, and collision as 'b'"), Aspect.FORM),
         (loss("shape 'a'", "role", "collision", "visual"), Aspect.PHYSICS),
         (loss("mesh 'a'", "scale", "[1 1 1]", "[2 2 2]"), Aspect.PHYSICS),
+        (loss("mesh 'a'", "content.texture coordinates", "0", "300"), Aspect.APPEARANCE),
+        (loss("mesh 'a'", "content.distance", "0", "0.1"), Aspect.PHYSICS),
+        (loss("mesh 'a_2'", "", None, "mesh(uri 'a_2.obj')"), Aspect.FORM),
+        (loss("shape 'a#2'", "", None, "shape(geometry box(size [1 1 1]), role visual, name none) {+ body 'a'}"), Aspect.FORM),
+        (loss("shape 'a#2'", "", None, "shape(geometry box(size [1 1 1]), role collision, name none) {+ body 'a'}"), Aspect.PHYSICS),
+        (loss("shape 'a'", "", "shape(geometry box(size [1 1 1]), role visual, name none) {+ body 'a'}", None), Aspect.PHYSICS),
     ],
 )
 def test_a_loss_concerns_the_physics_or_something_else(found: Loss, aspect: Aspect) -> None:
