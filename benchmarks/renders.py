@@ -19,11 +19,13 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 import numpy as np
 
 from hymeko_x import api, formats
+from hymeko_x.assets.pack import is_of_package
 from hymeko_x.corpus import cache, catalog
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.draw.files import grid, png
@@ -32,7 +34,7 @@ from hymeko_x.draw.render import Look, Studio, choose_backend, is_drawn, open_st
 from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.roots import leave_scenery_out
 from hymeko_x.robot import Robot
-from hymeko_x.source import ManyFiles
+from hymeko_x.source import Files, ManyFiles
 
 SIZE = (480, 360)
 FILLED = (0.3, 0.8)
@@ -41,6 +43,8 @@ CHANGED = 0.005
 """The part of the pixels that may differ after a conversion."""
 _DARK = 40
 """A picture whose robot is nowhere brighter than this is black."""
+_CRASHED = "exit"
+"""How the reason begins when a robot ended its process."""
 _SECONDS = 300.0
 """The time that a robot has, unless the command line gives another."""
 
@@ -73,10 +77,11 @@ class Drawn(msgspec.Struct):
     def faults(self) -> list[str]:
         """In what the robot misses the bar."""
         if self.reason:
-            return []
+            return [self.reason] if self.reason.startswith(_CRASHED) else []
         found = [f"fills {self.filled:.2f}"] if not FILLED[0] <= self.filled <= FILLED[1] else []
         found += ["is black"] if self.brightest < _DARK else []
-        return found + [f"{target} differs by {100.0 * part:.2f} %" for target, part in self.changed.items() if part >= CHANGED]
+        found += [f"{target} differs by {100.0 * part:.2f} %" for target, part in self.changed.items() if part >= CHANGED]
+        return found + [f"{target} has no picture, {reason}" for target, reason in self.failed.items()]
 
 
 def unknown(found: Drawn) -> list[str]:
@@ -85,8 +90,22 @@ def unknown(found: Drawn) -> list[str]:
     return [fault for fault in found.faults if not any(fault.startswith(targets) for targets in known)]
 
 
-def drawn(path: str, pictures: Path | None = None) -> Drawn:
-    """The robot in a file, and its conversions into every other format, by one camera."""
+class _Packages(NamedTuple):
+    """The files of packages around a robot, which stay where they are; others go along with a conversion."""
+
+    files: Files
+
+    def find(self, uri: str) -> str | None:
+        """The path of a file of a package."""
+        return self.files.find(uri) if is_of_package(uri) else None
+
+    def read(self, path: str) -> bytes:
+        """The content of such a path. Raises: OSError."""
+        return self.files.read(path)
+
+
+def drawn(path: str, pictures: Path | None = None, targets: tuple[formats.Format, ...] = formats.FORMATS) -> Drawn:
+    """The robot in a file, and its conversions into every other one of these formats, by one camera."""
     row = formats.of_input(path, Path(path).read_bytes())
     look = Look(SIZE, is_authored=True)
     try:
@@ -99,7 +118,7 @@ def drawn(path: str, pictures: Path | None = None) -> Drawn:
     rows, columns = np.flatnonzero(covered.any(axis=1)), np.flatnonzero(covered.any(axis=0))
     filled = max(np.ptp(rows) / SIZE[1], np.ptp(columns) / SIZE[0]) if covered.any() else 0.0
     found = Drawn(path, float(filled), int(before[True][covered].max(initial=0)), changed={}, failed={})
-    for target in formats.FORMATS:
+    for target in targets:
         if target.backend is None or target.frontend is None or (target is row and not is_drawn(row)):
             continue
         try:
@@ -121,7 +140,7 @@ def _converted(robot: Robot, target: formats.Format, look: Look, studio: Studio)
         file = Path(folder) / f"robot{target.suffixes[0]}"
         api.dump(robot, file, target.name, assets=None if target.holds_files else "copy", lenient=True)
         again = api.load(file, target.name, lenient=True)
-        again = Robot(again.mechanism, ManyFiles((again.files, robot.files)))  # files of packages stay where they are
+        again = Robot(again.mechanism, ManyFiles((again.files, _Packages(robot.files))))
         return open_studio(again, str(file) if is_drawn(target) else None, look, studio)
 
 
@@ -134,7 +153,7 @@ def apart(path: str, pictures: Path | None, seconds: float = _SECONDS) -> Drawn:
     except subprocess.TimeoutExpired:
         return Drawn(path, reason=f"took more than {seconds:.0f} s")
     if done.returncode:
-        return Drawn(path, reason=f"exit {done.returncode}: {done.stderr.strip()[-200:]}")
+        return Drawn(path, reason=f"{_CRASHED} {done.returncode}: {done.stderr.strip()[-200:]}")
     found = msgspec.json.decode(done.stdout.splitlines()[-1], type=Drawn)
     found.seconds = round(time.monotonic() - start, 1)
     return found
@@ -150,7 +169,7 @@ def development_robots(every: int) -> list[str]:
 def line(found: Drawn) -> str:
     """A robot in one line."""
     if found.reason:
-        return f"  --   {found.path}: {found.reason}"
+        return f"  {'FAIL' if found.faults else '--  '} {found.path}: {found.reason}"
     parts = " ".join(f"{target} {100.0 * part:.2f}" for target, part in found.changed.items())
     failed = "".join(f"; {target}: {reason}" for target, reason in found.failed.items())
     mark = "FAIL" if unknown(found) else "know" if found.faults else "ok  "
@@ -192,10 +211,10 @@ def main() -> int:
         return 0
     results = run(chosen.files or development_robots(chosen.every), chosen)
     made = [found for found in results if not found.reason]
-    good = [found for found in made if not unknown(found)]
-    known = sum(bool(found.faults) for found in good)
-    print(f"{len(results)} robots, {len(made)} drawn, {len(good)} without a fault or with one that is known ({known})")
-    return 0 if len(good) == len(made) else 1
+    faulty = [found for found in results if unknown(found)]
+    known = sum(bool(found.faults) for found in results) - len(faulty)
+    print(f"{len(results)} robots, {len(made)} drawn, {len(faulty)} with a fault that is not known, {known} with one that is known")
+    return 1 if faulty else 0
 
 
 if __name__ == "__main__":

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import argparse
+import re
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
 
 from benchmarks import renders
-from hymeko_x import api, codes
+from hymeko_x import api, codes, formats
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.draw.pair import Subject, pair
 from hymeko_x.draw.render import Look, choose_backend
@@ -84,6 +87,50 @@ def test_a_fault_in_the_appearance_is_found(fault: tuple[str, str], leg: Path) -
     assert changed(leg, other) > renders.CHANGED
 
 
+@pytest.mark.parametrize(
+    ("written", "fault"),
+    [
+        (r'(foot\.obj")', r'\1 scale="1 -1 1"'),
+        ('rgba="0.8 0.3 0.1 1"', 'rgba="0.1 0.3 0.8 1"'),
+        ("<texture [^>]*>", ""),
+    ],
+    ids=["mirrored mesh", "wrong colour", "lost texture"],
+)
+def test_a_fault_of_a_writer_is_found(written: str, fault: str, leg: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def spoil(file: Path) -> None:
+        text, count = re.subn(written, fault, file.read_text())
+        assert count
+        file.write_text(text)
+
+    assert faults_of(leg, "urdf", spoil, monkeypatch) == ["urdf differs by"]
+
+
+@pytest.mark.unread("HX201")
+def test_a_mesh_that_does_not_go_along_is_found(leg: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    api.dump(api.load(leg), leg.with_name("leg.urdf"), "urdf")
+
+    def spoil(file: Path) -> None:
+        (mesh,) = file.parent.rglob("*.obj")
+        mesh.unlink()
+
+    assert faults_of(leg.with_name("leg.urdf"), "xacro", spoil, monkeypatch) == ["xacro differs by"]
+
+
+def faults_of(robot: Path, target: str, spoil: Callable[[Path], None], monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The faults, without their numbers, of a robot whose conversion into a format is spoiled."""
+    dump = api.dump
+
+    def dumped(robot: Robot, file: Path, format: str, **options: Any) -> None:
+        dump(robot, file, format, **options)
+        if format == target:
+            spoil(file)
+
+    monkeypatch.setattr(api, "dump", dumped)
+    found = renders.drawn(str(robot), targets=(formats.by_name(target),))
+    assert (found.reason, found.failed) == ("", {})
+    return [" ".join(fault.split()[:3]) for fault in found.faults]
+
+
 def test_a_robot_with_mesh_and_texture_has_its_picture_in_every_format(leg: Path) -> None:
     found = renders.drawn(str(leg))
     assert (found.reason, found.failed, found.faults) == ("", {}, [])
@@ -91,9 +138,10 @@ def test_a_robot_with_mesh_and_texture_has_its_picture_in_every_format(leg: Path
 
 
 def test_the_bar_names_what_is_wrong() -> None:
-    found = renders.Drawn("a.urdf", 0.2, 10, changed={"usd": 0.02, "sdf": 0.001})
-    assert found.faults == ["fills 0.20", "is black", "usd differs by 2.00 %"]
-    assert renders.line(found) == "  FAIL a.urdf: fills 0.20, differs by % usd 2.00 sdf 0.10"
+    found = renders.Drawn("a.urdf", 0.2, 10, changed={"usd": 0.02, "sdf": 0.001}, failed={"mjcf": "HX302: no"})
+    assert found.faults == ["fills 0.20", "is black", "usd differs by 2.00 %", "mjcf has no picture, HX302: no"]
+    assert renders.line(found) == "  FAIL a.urdf: fills 0.20, differs by % usd 2.00 sdf 0.10; mjcf: HX302: no"
+    assert renders.line(renders.Drawn("c.urdf", reason="exit -11: ")) == "  FAIL c.urdf: exit -11: "
     assert renders.line(renders.Drawn("b.urdf", reason="HX501: no")) == "  --   b.urdf: HX501: no"
 
 
