@@ -252,7 +252,10 @@ def _groups(model: mujoco.MjModel, *, collision: bool) -> frozenset[int]:
 
 
 def _remove_surroundings(spec: Any) -> None:
-    """Take away sky, floors, gloss, skins and settings of the view, which other formats cannot represent: the robot alone is compared."""
+    """Take away sky, floors, terrain, gloss, skins and settings of the view, which other formats cannot represent.
+
+    The robot alone is compared.
+    """
     import mujoco
 
     for material in spec.materials:
@@ -265,7 +268,7 @@ def _remove_surroundings(spec: Any) -> None:
     if spec.skins:
         _show_below_skins(spec)
     for geom in spec.worldbody.geoms:
-        if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
+        if geom.type in (mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_HFIELD):
             geom.material, geom.rgba = "", [0.0] * 4
 
 
@@ -345,6 +348,7 @@ def _options(look: Look, groups: frozenset[int]) -> mujoco.MjvOption:
     options.geomgroup[:] = [group in groups or group == 0 for group in range(mujoco.mjNGROUP)]
     options.sitegroup[:] = 0
     options.flags[mujoco.mjtVisFlag.mjVIS_INERTIA] = look.inertia
+    options.flags[mujoco.mjtVisFlag.mjVIS_RANGEFINDER] = not look.is_authored  # rays, which depend on sensors that formats lack
     options.flags[mujoco.mjtVisFlag.mjVIS_TRANSPARENT] = look.frames or look.inertia
     if look.frames:
         options.frame = mujoco.mjtFrame.mjFRAME_BODY

@@ -235,3 +235,16 @@ def test_an_image_on_the_sides_of_a_box_is_there_in_every_format(tmp_path: Path)
     (tmp_path / "r.xml").write_text(WOODEN)
     found = renders.drawn(str(tmp_path / "r.xml"))
     assert (found.reason, found.failed, found.faults) == ("", {}, [])
+
+
+TERRAIN = """<mujoco model="r"><asset><hfield name="hills" nrow="3" ncol="3" size="5 5 1 0.1" elevation="0 0 0 0 1 0 0 0 0"/></asset>
+<worldbody><geom type="hfield" hfield="hills" pos="0 0 -2"/><body name="b" pos="0 0 1"><freejoint/>
+<geom type="box" size="0.2 0.3 0.4"/><site name="eye" pos="0.3 0 0.5" zaxis="1 0 -1"/></body></worldbody>
+<sensor><rangefinder name="far" site="eye"/></sensor></mujoco>"""
+
+
+@pytest.mark.unread("HX104")
+def test_a_robot_is_compared_without_its_terrain_and_the_rays_of_its_sensors(tmp_path: Path) -> None:
+    (tmp_path / "r.xml").write_text(TERRAIN)
+    found = renders.drawn(str(tmp_path / "r.xml"), targets=(formats.by_name("urdf"),))
+    assert (found.reason, found.failed, found.faults) == ("", {}, [])
