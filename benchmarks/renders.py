@@ -111,7 +111,10 @@ def drawn(path: str, pictures: Path | None = None, targets: tuple[formats.Format
     try:
         robot = api.load(path, lenient=True)
         studio = open_studio(robot, path if is_drawn(row) else None, look)
-        before, covered = {tendons: studio.still(tendons=tendons) for tendons in (True, False)}, studio.covered()
+        before = dict.fromkeys((True, False), studio.still())
+        if studio.model.ntendon:
+            before[False] = studio.still(tendons=False)
+        covered = studio.covered()
     except Refusal as refusal:
         return Drawn(path, reason=f"{refusal.diagnostic.code.id}: {refusal.diagnostic.message}"[:200])
     robot = Robot(leave_scenery_out(robot.mechanism, Context(Report())), robot.files)  # URDF makes boxes of floors

@@ -43,6 +43,8 @@ _FIELD_OF_VIEW = 35.0
 
 _AWAY = 8.0
 """How many times its size from the robot the light is: near ones leave the ground dark at the edges of the picture."""
+_GROUND = "hymeko-x ground"
+"""The name of the ground, and of its material and texture."""
 _SHADOWED = 0.15
 """The part of the light's cone in which shadows are drawn: so far away, about twice the robot."""
 
@@ -77,17 +79,21 @@ class Studio:
         self._look = look
         if look.is_authored:
             _remove_surroundings(spec)
+        if like is not None:  # its scene fits this robot, which is compiled once then
+            _add_scene(spec, like.corners, look)
         self.model = _compiled(spec, name)
         self.data = mujoco.MjData(self.model)
         self._place(look.pose)
         self._groups = _groups(self.model, collision=look.collision)
-        if like is not None:
-            self._take_joints_of(like)
         self.corners: Corners = self._own_corners() if like is None else like.corners
-        self.model = _compiled(_with_scene(spec, self.model, self.corners, look), name)
-        placed, self.data = self.data, mujoco.MjData(self.model)
-        self.data.qpos[:] = placed.qpos
-        mujoco.mj_forward(self.model, self.data)
+        if like is None:
+            _add_scene(spec, self.corners, look)
+            self.model = _compiled(spec, name)
+            placed, self.data = self.data, mujoco.MjData(self.model)
+            self.data.qpos[:] = placed.qpos
+            mujoco.mj_forward(self.model, self.data)
+        else:
+            self._take_joints_of(like)
         self._options = _options(look, self._groups)
 
     def still(self, *, tendons: bool = True) -> Picture:
@@ -247,8 +253,9 @@ def _groups(model: mujoco.MjModel, *, collision: bool) -> frozenset[int]:
     """The groups of geoms to draw: the visual ones, or those for collision where they are asked for or there are no others."""
     if collision:
         return _COLLISION if any(group in _COLLISION for group in model.geom_group) else _VISUAL
-    moving = [model.geom_group[geom] for geom in range(model.ngeom) if model.geom_bodyid[geom] != 0]
-    return _VISUAL if any(group in _VISUAL for group in (moving or model.geom_group)) else _VISUAL | _COLLISION
+    own = [geom for geom in range(model.ngeom) if model.geom(geom).name != _GROUND]
+    moving = [geom for geom in own if model.geom_bodyid[geom] != 0]
+    return _VISUAL if any(model.geom_group[geom] in _VISUAL for geom in (moving or own)) else _VISUAL | _COLLISION
 
 
 def _remove_surroundings(spec: Any) -> None:
@@ -281,8 +288,8 @@ def _show_below_skins(spec: Any) -> None:
             geom.group = max(_VISUAL)
 
 
-def _with_scene(spec: Any, model: mujoco.MjModel, corners: Corners, look: Look) -> Any:
-    """The robot with a sky, with one light, and with ground under it if it has none."""
+def _add_scene(spec: Any, corners: Corners, look: Look) -> None:
+    """Add a sky, one light, and ground under the robot if it has none."""
     import mujoco
 
     spec.visual.global_.offwidth, spec.visual.global_.offheight = look.size
@@ -305,9 +312,8 @@ def _with_scene(spec: Any, model: mujoco.MjModel, corners: Corners, look: Look) 
     light.pos, light.dir = [at - _AWAY * corners.size * along for at, along in zip(centre, beam, strict=True)], beam
     spec.visual.map.shadowscale = _SHADOWED
     light.diffuse, light.specular = [0.6] * 3, [0.2] * 3
-    if look.is_authored or not any(kind == mujoco.mjtGeom.mjGEOM_PLANE for kind in model.geom_type):
+    if look.is_authored or not any(geom.type == mujoco.mjtGeom.mjGEOM_PLANE for geom in spec.geoms):
         _add_ground(spec, corners)
-    return spec
 
 
 def _add_ground(spec: Any, corners: Corners) -> None:
@@ -316,7 +322,7 @@ def _add_ground(spec: Any, corners: Corners) -> None:
 
     square = 10.0 ** round(math.log10(corners.size / 5.0))
     spec.add_texture(
-        name="hymeko-x ground",
+        name=_GROUND,
         type=mujoco.mjtTexture.mjTEXTURE_2D,
         builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
         width=256,
@@ -325,15 +331,15 @@ def _add_ground(spec: Any, corners: Corners) -> None:
         rgb2=[0.8, 0.83, 0.86],
     )
     plain = {"rgba": [1.0] * 4, "emission": 0.0, "specular": 0.5, "shininess": 0.5, "reflectance": 0.0}  # whatever the file's defaults are
-    material = spec.add_material(name="hymeko-x ground", texuniform=True, texrepeat=[1.0 / (2.0 * square)] * 2, **plain)
-    material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "hymeko-x ground"
+    material = spec.add_material(name=_GROUND, texuniform=True, texrepeat=[1.0 / (2.0 * square)] * 2, **plain)
+    material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = _GROUND
     centre = corners.points.mean(axis=0)
     spec.worldbody.add_geom(
-        name="hymeko-x ground",
+        name=_GROUND,
         type=mujoco.mjtGeom.mjGEOM_PLANE,
         size=[0.0, 0.0, square],
         pos=[centre[0], centre[1], corners.lowest - 1e-4 * corners.size],
-        material="hymeko-x ground",
+        material=_GROUND,
         rgba=[0.5, 0.5, 0.5, 1.0],  # which leaves the colour to the material
         group=0,
         contype=0,
