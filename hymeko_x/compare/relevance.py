@@ -53,8 +53,7 @@ def relevant(
     on a body whose mass and tensor are given; a centre of mass and a tensor that HyMeKo text leaves to the shapes; other frames of a joint
     that moves its body alike; the colour of a material on the shape itself; an effort limit that is what the actuators of the source can
     exert; a frame that is where the body of its name is; an extra that holds nothing; a pose that is a keyframe; a sensor, a camera or a
-    text that is held in a fragment, as ``is_held`` says.
-    What an author wrote counts, used or not.
+    text that is held in a fragment, as ``is_held`` says. What an author wrote counts, used or not.
     """
     alike: dict[Id, bool] = {}
     native = formats.native_format(before)
