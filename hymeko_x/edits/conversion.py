@@ -12,11 +12,12 @@ from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import is_idle, relevant
 from hymeko_x.diagnostics import Report
+from hymeko_x.edits.classes import edited_classes, with_made_classes
 from hymeko_x.edits.differences import aim, has_other_forms, is_lost_name, is_of_asset, is_of_extra, is_telling, is_value_of_shape
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_assets, with_same_numbers
 from hymeko_x.edits.weights import with_computed_gains, with_least_masses, without_followed
-from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id
+from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, Mechanism
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Body, Mesh, Shape, Texture
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Set
 
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import JointView, Mechanism
+    from hymeko_x.ir.mechanism import JointView
     from hymeko_x.rewrite import Options
     from hymeko_x.source import Files, Source
 
@@ -88,6 +89,7 @@ class Conversion:
         self.folder = os.path.dirname(edited.name) or "."
         self._used: Guess | None = None
         self._first_image: Mechanism | None = None
+        self._first_original = Mechanism("")
         self._asked: frozenset[tuple[Id, str, str | None]] | None = None
         self._homes: dict[Id, Id] = {}
         self.computed: list[Id] = []
@@ -109,9 +111,10 @@ class Conversion:
         self._used = guess
         residue = residue_of(mechanism, guess.image)
         self._homes = homes = dict(residue.alignment.names)
-        self.edited = with_same_assets(with_same_numbers(self._read, guess.image, self._unnamed_bodies()), guess.image)
         if self._first_image is None:
-            self._first_image = guess.image
+            self._first_image, self._first_original = guess.image, mechanism
+        read = with_made_classes(self._read, guess.image, self._first_original, self.format)
+        self.edited = with_same_assets(with_same_numbers(read, guess.image, self._unnamed_bodies()), guess.image)
         sources = {key: mechanism.graph.vertices.get(homes.get(key, key)) for key, _ in self.edited.vertices(Actuator)}
         self.edited, self.computed = with_computed_gains(
             with_least_masses(self.edited, guess.image), self._first_image, guess.image, sources
@@ -155,7 +158,9 @@ class Conversion:
         words[True] += [
             f"{old.kind} '{old.name}' is called '{new.name}'" for new, old in names.made.items() if self._is_called_anew(new, old)
         ]
+        assert self._first_image is not None
         edits = [str(edit) for edit in rest if is_telling(edit)]
+        edits += edited_classes(self._read, self._first_image, self._first_original, self.format)
         return Left({*names.given, *names.given.values()}, words[False], words[True], edits, sum(not is_of_asset(edit) for edit in found))
 
     def unmet(self, known: Container[str], *, of_extras: bool) -> Iterator[tuple[Id, str]]:
