@@ -111,14 +111,7 @@ class Conversion:
         self._used = guess
         residue = residue_of(mechanism, guess.image)
         self._homes = homes = dict(residue.alignment.names)
-        if self._first_image is None:
-            self._first_image, self._first_original = guess.image, mechanism
-        read = with_made_classes(self._read, guess.image, self._first_original, self.format)
-        self.edited = with_same_assets(with_same_numbers(read, guess.image, self._unnamed_bodies()), guess.image)
-        sources = {key: mechanism.graph.vertices.get(homes.get(key, key)) for key, _ in self.edited.vertices(Actuator)}
-        self.edited, self.computed = with_computed_gains(
-            with_least_masses(self.edited, guess.image), self._first_image, guess.image, sources
-        )
+        self.edited, self.computed = self._comparable(guess.image)
         if self._asked is None:
             self._asked = frozenset(map(aim, diff(guess.image, self.edited, TOLERANCE)))
         names = self._renames(guess.image)
@@ -127,6 +120,15 @@ class Conversion:
         own = {new: homes.get(old, old) for new, old in names.given.items() if not _is_beside(new, old)}
         named = with_new_names(restored, {new: old for new, old in own.items() if old != WORLD})
         return with_edited_poses(self._with_transmissions(named), guess.image, self.edited, self.format)
+
+    def _comparable(self, image: Mechanism) -> tuple[Mechanism, list[Id]]:
+        """EDITED with the classes, numbers and computed values of the image where no edit is of them; and the actuators that have such."""
+        if self._first_image is None:
+            self._first_image, self._first_original = image, self.mechanism
+        read = with_made_classes(self._read, image, self._first_original, self.format)
+        edited = with_same_assets(with_same_numbers(read, image, self._unnamed_bodies()), image)
+        sources = {key: self.mechanism.graph.vertices.get(self._homes.get(key, key)) for key, _ in edited.vertices(Actuator)}
+        return with_computed_gains(with_least_masses(edited, image), self._first_image, image, sources)
 
     def _first(self) -> Guess:
         """How the first conversion may have been made."""
