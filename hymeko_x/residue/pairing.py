@@ -180,8 +180,8 @@ def _placed(edge: RobotEdge) -> list[RobotArc]:
 
 
 def _may_be_others(shape: Shape, other: Shape) -> bool:
-    """Whether two shapes of one id have no names of their own, or different ones."""
-    return shape.name != other.name if shape.name and other.name else not (shape.name or other.name)
+    """Whether two shapes of one id do not have the same name of their own."""
+    return not shape.name or shape.name != other.name
 
 
 def reordered_shapes(edited: Mechanism, image: Mechanism) -> dict[Id, Id]:

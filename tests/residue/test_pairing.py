@@ -44,6 +44,19 @@ def test_a_mesh_behind_a_cylinder_is_no_cylinder() -> None:
     assert aligned.graph == source.graph
 
 
+def test_a_shape_without_a_name_is_no_shape_with_one() -> None:
+    rod, cover = Capsule(0.05, 0.5), Shape(Cylinder(0.01, 0.1), Role.VISUAL, "cover")
+    source = robot(("b0/shape", Shape(rod, Role.BOTH), HERE, None), ("b0/visual", cover, ABOVE, None))
+    image = robot(
+        ("b0/visual", visual(rod), HERE, None),
+        ("b0/visual#2", cover, ABOVE, None),
+        ("b0/collision", Shape(rod, Role.COLLISION), HERE, None),
+    )
+    alignment, aligned = align(image, source)
+    assert dict(alignment.names) == ids({"b0/visual": "b0/shape", "b0/visual#2": "b0/visual"})
+    assert aligned.graph == source.graph
+
+
 def test_meshes_of_one_place_are_paired_by_their_files() -> None:
     source = robot(("b0/visual", visual(), HERE, "left"), ("b0/visual#2", visual(), HERE, "right"))
     image = robot(("b0/visual", visual(), HERE, "right"), ("b0/visual#2", visual(), HERE, "left"))
