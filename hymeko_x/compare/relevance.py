@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
+from hymeko_x.ir.kinematics import displacement
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, numbers_weight, pose_weight
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import MESH_POINTS, Body, DofKind, Joint, Layer, Material, Mesh, Mount, Sense, Shape, Stance
@@ -15,7 +16,7 @@ from hymeko_x.rewrite.efforts import actuator_efforts
 from hymeko_x.rewrite.sites import is_link
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from hymeko_x.compare.diff import Difference, Tolerance
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge
@@ -26,6 +27,8 @@ _AXIS = re.compile(r"dofs\[(\d+)\]\.axis")
 _EFFORT = re.compile(r"dofs\[(\d+)\]\.limits\.effort")
 _FRAMES = re.compile(r"\[[01]\]\.weight.*|dofs\[\d+\]\.(axis|anchor)")
 _TURNING_FREELY = (DofKind.BALL, DofKind.FREE)
+_SAMPLES = (0.0, 0.5, -0.8)
+"""Coordinates in m or rad at which two motions are compared: two turns that agree at three angles are about one axis."""
 _NO_AXES = (X, Z)
 """The axes of URDF and MJCF where none is given."""
 _WEIGHTS = ("mass", "density")
@@ -213,9 +216,10 @@ def _is_idle_axis(mechanism: Mechanism, difference: Difference) -> bool:
 
 
 def _move_alike(a: RobotEdge, b: RobotEdge, tolerance: Tolerance) -> bool:
-    """Whether two joints between the same bodies move these alike, and are where they are at rest.
+    """Whether two joints between the same bodies move these alike: the pose P M(q) C^-1 is the same at every q.
 
-    P M C^-1 = (P C^-1) (C M C^-1), in which C M C^-1 turns about C's image of the axis, through C's image of the anchor.
+    For dofs with one coordinate it is compared at a few q. For others P M C^-1 = (P C^-1) (C M C^-1), in which C M C^-1 turns about C's
+    image of the axis, through C's image of the anchor.
     """
     first, second = a.data, b.data
     if not (isinstance(first, Joint) and isinstance(second, Joint)) or len(a.arcs) != 2 or len(b.arcs) != 2:
@@ -224,10 +228,20 @@ def _move_alike(a: RobotEdge, b: RobotEdge, tolerance: Tolerance) -> bool:
         return False
     if [dof.kind for dof in first.dofs] != [dof.kind for dof in second.dofs]:
         return False
+    if not any(dof.kind in _TURNING_FREELY for dof in first.dofs):
+        return all(_same(_moved(a, first.dofs, by), _moved(b, second.dofs, by), tolerance) for by in _SAMPLES)
     (above, below), (other_above, other_below) = (tuple(pose_weight(arc) for arc in edge.arcs) for edge in (a, b))
     return _same(compose(above, inverse(below)), compose(other_above, inverse(other_below)), tolerance) and all(
         _move_alike_dofs(dof, below, other, other_below, tolerance) for dof, other in zip(first.dofs, second.dofs, strict=True)
     )
+
+
+def _moved(joint: RobotEdge, dofs: Sequence[Dof], by: float) -> Pose:
+    """The pose of a joint's child in its parent where its first coordinate is ``by``, and every further one another number."""
+    above, below = map(pose_weight, joint.arcs)
+    for number, dof in enumerate(dofs, 1):
+        above = compose(above, displacement(dof, number * by - dof.ref))
+    return compose(above, inverse(below))
 
 
 def _same(a: Pose, b: Pose, tolerance: Tolerance) -> bool:

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x.ir.mechanism import WORLD
-from hymeko_x.ir.parts import Coupling, Drive, Joint, Sense, Tendon
-from hymeko_x.ir.values import IDENTITY, compose, inverse
+from hymeko_x.ir.parts import Coupling, DofKind, Drive, Joint, Sense, Tendon
+from hymeko_x.ir.values import IDENTITY, ZERO, Pose, add, compose, inverse, quat_about, rotate, scaled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.parts import Dof
-    from hymeko_x.ir.values import Pose
+    from hymeko_x.ir.values import Quat, Vec3
 
     Dofs = Mapping[tuple[Id, int], tuple[Id, str]]
 
@@ -58,6 +58,20 @@ def _moved_arc(arc: RobotArc, mechanism: Mechanism, moved: Dofs) -> RobotArc:
         return arc
     target, role = moved[arc.target, found[0]]
     return replace(arc, target=target, role=role)
+
+
+def displacement(dof: Dof, by: float) -> Pose:
+    """The motion of a joint's frame when a dof with one coordinate is ``by`` (m or rad) from its reference; none for other dofs."""
+    if not by or dof.kind in (DofKind.BALL, DofKind.FREE):
+        return IDENTITY
+    if dof.kind is DofKind.SLIDE:
+        return Pose(add(ZERO, scaled(dof.axis, by)))  # a sum has no negative zeros
+    return turn_about(dof.anchor, quat_about(dof.axis, by), scaled(dof.axis, dof.pitch * by))
+
+
+def turn_about(anchor: Vec3, turn: Quat, shift: Vec3 = ZERO) -> Pose:
+    """A turn that keeps the anchor in place, followed by a shift."""
+    return Pose(add(add(anchor, scaled(rotate(turn, anchor), -1.0)), shift), turn)
 
 
 def reference_poses(mechanism: Mechanism) -> dict[Id, Pose]:

@@ -8,9 +8,10 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from hymeko_x.ir.kinematics import displacement
 from hymeko_x.ir.mechanism import WORLD, Id
-from hymeko_x.ir.parts import DofKind, Role
-from hymeko_x.ir.values import IDENTITY, Pose, add, compose, inverse, quat_about, rotate, rotation_angle, scaled
+from hymeko_x.ir.parts import Role
+from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, rotation_angle
 from hymeko_x.residue import Alignment, Fold, Join
 from hymeko_x.residue.pairing import content_of, other_names
 from hymeko_x.residue.realign import are_twins, fold_chains, join_twins, move_frames, realign
@@ -19,13 +20,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from hymeko_x.ir.mechanism import JointView, Mechanism
-    from hymeko_x.ir.parts import Dof
 
 _SAME_PLACE = 1e-5
 """Frames closer than this (m, rad) are the same: what is left is rounding, in single precision for some formats."""
 _ROUNDING = 1e-13
 """How much a number of a quaternion may change when it is written as angles."""
-_SCALAR = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
 
 
 def align(image: Mechanism, source: Mechanism) -> tuple[Alignment, Mechanism]:
@@ -98,7 +97,7 @@ def _agree_in_poses(image: Mechanism, source: Mechanism) -> bool:
             return False
         if not (_alike(view.parent_pose, other.parent_pose) and _alike(view.child_pose, other.child_pose)):
             return False
-        if list(map(_moved_to_zero, view.joint.dofs)) != list(map(_moved_to_zero, other.joint.dofs)):
+        if [displacement(dof, -dof.ref) for dof in view.joint.dofs] != [displacement(dof, -dof.ref) for dof in other.joint.dofs]:
             return False
     return True
 
@@ -134,16 +133,5 @@ def _zero_pose(mechanism: Mechanism, body: Id, poses: dict[Id, Pose]) -> Pose:
         return IDENTITY
     pose = compose(poses.get(above.parent, IDENTITY), above.parent_pose)
     for dof in above.joint.dofs:
-        pose = compose(pose, _moved_to_zero(dof))
+        pose = compose(pose, displacement(dof, -dof.ref))
     return compose(pose, inverse(above.child_pose))
-
-
-def _moved_to_zero(dof: Dof) -> Pose:
-    """What a dof does between its reference and zero."""
-    if dof.ref == 0.0 or dof.kind not in _SCALAR:
-        return IDENTITY
-    if dof.kind is DofKind.SLIDE:
-        return Pose(scaled(dof.axis, -dof.ref))
-    turn = quat_about(dof.axis, -dof.ref)
-    along = scaled(dof.axis, -dof.ref * dof.pitch)
-    return Pose(add(along, add(dof.anchor, scaled(rotate(turn, dof.anchor), -1.0))), turn)

@@ -77,6 +77,12 @@ def without_colour(edge: RobotEdge) -> RobotEdge:
     return Edge(replace(edge.data, rgba=None), tuple([arc for arc in edge.arcs if arc.role != "material"]))
 
 
+def without_surface(edge: RobotEdge) -> RobotEdge:
+    """A shape without what weighs nothing: its colour, material and friction; any other edge as it is."""
+    plain = without_colour(edge)
+    return Edge(replace(plain.data, friction=()), plain.arcs) if isinstance(plain.data, Shape) else plain
+
+
 def _is_alike_arc(now: RobotArc, then: RobotArc) -> bool:
     return (now.sign, now.target.kind, bool(now.role)) == (then.sign, then.target.kind, bool(then.role)) and is_alike(
         now.weight, then.weight

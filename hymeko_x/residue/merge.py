@@ -16,7 +16,7 @@ from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Shape, Texture
 from hymeko_x.ir.types import is_sound, settled
-from hymeko_x.residue.alike import URI, holds, is_alike, is_moved, without_colour
+from hymeko_x.residue.alike import URI, holds, is_alike, is_moved, without_surface
 from hymeko_x.residue.arcs import with_edited_weights, with_own_ends, without_lost_material
 from hymeko_x.residue.landmarks import renamed_since
 from hymeko_x.residue.parts import GEOMETRY, broken, capsules_of, parts_of
@@ -158,13 +158,13 @@ class _Merge:
         return not follows or self._has_its_shapes(key)
 
     def _has_its_shapes(self, body: Id) -> bool:
-        """Whether the shapes of a body whose mass follows from them are what they were, but for their colours."""
+        """Whether the shapes of a body whose mass follows from them are what they were, but for colour and friction."""
         expected = self._shapes_then[body]
         return len(self.image.shapes.get(body, ())) == len(expected) and all(map(self._weighs_the_same, expected))
 
     def _weighs_the_same(self, then: Element) -> bool:
         now = self.image.graph.edges.get(then.id)
-        return now is not None and isinstance(then.part, Edge) and is_alike(without_colour(now), without_colour(then.part))
+        return now is not None and isinstance(then.part, Edge) and is_alike(without_surface(now), without_surface(then.part))
 
     # ---- elements ----------------------------------------------------------------------------------------------------------
 

@@ -128,14 +128,14 @@ def _seen_from(dof: Dof, frame: Pose) -> Dof:
 
 
 def join_twins(mechanism: Mechanism, joins: Iterable[Join]) -> Mechanism:
-    """Shapes that are seen and touched alike, as one."""
+    """Shapes that are seen and touched alike, as one with the friction of what is touched."""
     edges: dict[Id, RobotEdge] = {}
     gone: list[Id] = []
     for shape, twin in joins:
         seen, touched = mechanism.graph.edges.get(shape), mechanism.graph.edges.get(twin)
         if seen is None or touched is None or not are_twins(seen, touched):
             continue
-        edges[shape] = replace(seen, data=replace(_shape(seen), role=Role.BOTH))
+        edges[shape] = replace(seen, data=replace(_shape(seen), role=Role.BOTH, friction=_shape(touched).friction))
         gone.append(twin)
     return mechanism.replace(edges=edges, without=gone) if edges else mechanism
 

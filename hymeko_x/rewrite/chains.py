@@ -14,11 +14,11 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.ir.kinematics import edges_to_moved_dofs
+from hymeko_x.ir.kinematics import displacement, edges_to_moved_dofs
 from hymeko_x.ir.mechanism import Id, JointView, Mechanism, joint_edge, numbers_weight
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import UNLIMITED, Body, Dof, DofKind, Joint, Stance
-from hymeko_x.ir.values import IDENTITY, ZERO, Pose, X, Y, Z, add, compose, inverse, quat_about, quat_inverse, rpy_from_quat, scaled
+from hymeko_x.ir.values import IDENTITY, ZERO, Pose, X, Y, Z, add, compose, inverse, quat_inverse, rpy_from_quat, scaled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -159,7 +159,8 @@ def _steps(view: JointView, *, keeps_balls: bool) -> tuple[list[_Step], Pose]:
     for number, dof in enumerate(view.joint.dofs):
         for single in [dof] if keeps_balls else _singles(dof, dof.name or view.id.name):
             at = compose(frame, Pose(dof.anchor))
-            steps.append(_Step(compose(at, _moved_by(single, -dof.ref)), replace(single, anchor=ZERO, ref=0.0), number))
+            centred = replace(single, anchor=ZERO, ref=0.0)
+            steps.append(_Step(compose(at, displacement(centred, -dof.ref)), centred, number))
             frame = Pose(add(ZERO, scaled(dof.anchor, -1.0)))  # a sum has no negative zeros
     if not steps:
         return [], compose(frame, inverse(view.child_pose))
@@ -176,11 +177,3 @@ def _singles(dof: Dof, name: str) -> list[Dof]:
     same = replace(dof, kind=DofKind.HINGE, limits=UNLIMITED, written=None)
     names = (f"{name}_x", f"{name}_y", f"{name}_z" if dof.name else None)
     return [replace(same, axis=axis, name=own) for axis, own in zip((X, Y, Z), names, strict=True)]
-
-
-def _moved_by(dof: Dof, coordinate: float) -> Pose:
-    if not coordinate:
-        return IDENTITY
-    if dof.kind is DofKind.SLIDE:
-        return Pose(add(ZERO, scaled(dof.axis, coordinate)))  # a sum has no negative zeros
-    return Pose(ZERO, quat_about(dof.axis, coordinate)) if dof.kind is DofKind.HINGE else IDENTITY

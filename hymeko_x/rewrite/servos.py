@@ -6,10 +6,10 @@ import math
 import operator
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.kinematics import displacement, dof_number
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, DofKind
-from hymeko_x.ir.values import IDENTITY, Pose, add, apply, compose, cross, inverse, quat_about, rotate, rotate_tensor, scaled
+from hymeko_x.ir.values import IDENTITY, Pose, add, apply, compose, cross, inverse, rotate, rotate_tensor, scaled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -136,7 +136,7 @@ def _frames(view: JointView, parent: Pose) -> Iterator[Pose]:
     frame = compose(parent, view.parent_pose)
     yield frame
     for dof in view.joint.dofs:
-        frame = compose(frame, _motion(dof))
+        frame = compose(frame, displacement(dof, home(dof) - dof.ref))
         yield frame
 
 
@@ -151,17 +151,6 @@ def home_poses(mechanism: Mechanism) -> dict[Id, Pose]:
         *_, last = _frames(above, poses.get(above.parent, IDENTITY))
         poses[body] = compose(last, inverse(above.child_pose))
     return poses
-
-
-def _motion(dof: Dof) -> Pose:
-    """What a dof at home adds to the frame of its joint."""
-    by = home(dof) - dof.ref
-    if not by or dof.kind in (DofKind.BALL, DofKind.FREE):
-        return IDENTITY
-    if dof.kind is DofKind.SLIDE:
-        return Pose(scaled(dof.axis, by))
-    turn = Pose(scaled(dof.axis, dof.pitch * by), quat_about(dof.axis, by))
-    return compose(Pose(dof.anchor), compose(turn, inverse(Pose(dof.anchor))))
 
 
 # ---- spatial vectors and inertias, in the world about its origin: rotation before translation ------------------------------------

@@ -9,15 +9,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.kinematics import below, dof_number
+from hymeko_x.ir.kinematics import below, displacement, dof_number, turn_about
 from hymeko_x.ir.mechanism import WORLD, numbers_weight
 from hymeko_x.ir.parts import Coupling, Dof, DofKind
-from hymeko_x.ir.values import IDENTITY, Pose, add, compose, pose, quat_about, rotate, scaled
+from hymeko_x.ir.values import IDENTITY, Pose, compose, pose
 from hymeko_x.robot.errors import EditError, unknown_name
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotArc
-    from hymeko_x.ir.values import Quat, Vec3
 
 Coordinates = Mapping[str, "float | Sequence[float]"] | Sequence[float]
 """Coordinates by joint, or all of them in the order of the joints: rad or m, a quaternion (w, x, y, z) for a ball, position in m and
@@ -170,13 +169,5 @@ def _motion(dof: Dof, numbers: tuple[float, ...]) -> Pose:
     if dof.kind is DofKind.FREE:
         return pose((numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5], numbers[6]))
     if dof.kind is DofKind.BALL:
-        return _about(pose(quat=(numbers[0], numbers[1], numbers[2], numbers[3])).quat, dof.anchor, (0.0, 0.0, 0.0))
-    moved = numbers[0] - dof.ref
-    if dof.kind is DofKind.SLIDE:
-        return Pose(scaled(dof.axis, moved))
-    return _about(quat_about(dof.axis, moved), dof.anchor, scaled(dof.axis, dof.pitch * moved))
-
-
-def _about(turn: Quat, anchor: Vec3, shift: Vec3) -> Pose:
-    """A turn that keeps the anchor in place, followed by a shift."""
-    return Pose(add(add(anchor, scaled(rotate(turn, anchor), -1.0)), shift), turn)
+        return turn_about(dof.anchor, pose(quat=(numbers[0], numbers[1], numbers[2], numbers[3])).quat)
+    return displacement(dof, numbers[0] - dof.ref)

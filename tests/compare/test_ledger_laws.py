@@ -245,6 +245,22 @@ def test_a_joint_that_moves_otherwise_is_a_loss(above: Vec3, below: Vec3, axis: 
     assert tuple(relevant(found, before, after, ledger.TOLERANCE)) == found
 
 
+def test_a_reference_that_is_in_the_frames_is_a_loss_and_the_frames_are_none() -> None:
+    """Both move the body alike at all coordinates; a simulation starts elsewhere."""
+    along, up = parts.Dof(parts.DofKind.SLIDE, X), parts.Dof(parts.DofKind.SLIDE, Z)
+    ends = Id("body", "a"), Id("body", "b")
+    before, after = (
+        Mechanism("r", Hypergraph(dict.fromkeys(ends, parts.Body()), {Id("joint", "j"): joint_edge(parts.Joint(dofs), *ends, Pose(place))}))
+        for dofs, place in (
+            ((replace(along, anchor=(0.0, 0.0, -1.25)), replace(up, ref=1.25)), (0.0, 0.0, 1.25)),
+            ((along, up), (0.0, 0.0, 0.0)),
+        )
+    )
+    found = diff(before, after, ledger.TOLERANCE)
+    assert {difference.field for difference in found} == {"dofs[0].anchor", "dofs[1].ref", "[0].weight"}
+    assert [difference.field for difference in relevant(found, before, after, ledger.TOLERANCE)] == ["dofs[1].ref"]
+
+
 def _told(before: Mechanism, after: Mechanism, alignment: Alignment) -> list[tuple[str, str]]:
     return [(loss.element, loss.field) for loss in ledger.losses_between(before, after, alignment_differences(alignment), formats.MJCF)]
 

@@ -197,3 +197,24 @@ def test_the_parts_of_a_named_capsule_stand_where_it_stood(tmp_path: Path) -> No
     assert '      <geom name="shin" type="cylinder" size="0.25 0.5"' in original.read_text()
     called = {row.message.rpartition(" ")[2] for row in report if row.code.id == "HX118"}
     assert called <= {"'shin'", "'shin_top'", "'shin_bottom'"}
+
+
+SLIPPERY = """<mujoco model="r">
+  <worldbody>
+    <body name="foot">
+      <joint name="ankle"/>
+      <geom name="sole" size="0.1" friction="0.9"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+def test_the_friction_of_the_collision_is_that_of_the_geom(tmp_path: Path) -> None:
+    """SDF has the geom as a visual and a collision, of which the second one has the friction; it weighs nothing."""
+    original, there = tmp_path / "r.xml", tmp_path / "r.sdf"
+    original.write_text(SLIPPERY)
+    assert not [loss for loss in hx.convert(original, there).losses if loss.field == "friction"]
+    there.write_text(there.read_text().replace("<mu>0.9</mu>", "<mu>0.5</mu>"))
+    report = hx.update(original, there).report
+    assert (original.read_text(), [*report]) == (SLIPPERY.replace('friction="0.9"', 'friction="0.5"'), [])

@@ -16,10 +16,11 @@ from hymeko_x.backends.sdf.names import make_names_unique_in_models, make_names_
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.sensors import IMAGE, LEAST_FOV
+from hymeko_x.ir.kinematics import displacement
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Body, Camera, Dof, DofKind, Frame, Joint, Light, Material, Mount, Shape
-from hymeko_x.ir.values import ZERO, Pose, compose, quat_about, scaled
+from hymeko_x.ir.values import ZERO, Pose, compose
 from hymeko_x.rewrite.chains import chain_dofs
 from hymeko_x.rewrite.couplings import drop_inactive_couplings, make_couplings_scalar
 from hymeko_x.rewrite.efforts import limit_efforts_by_actuators
@@ -59,18 +60,10 @@ def move_anchors_into_frames(mechanism: Mechanism, _context: Context) -> Mechani
         if len(dofs) != 1 or dofs[0].kind is DofKind.FREE or not (any(dofs[0].anchor) or dofs[0].ref):
             continue
         dof, at = dofs[0], Pose(dofs[0].anchor)
-        parent = compose(compose(view.parent_pose, at), _moved_by(dof, -dof.ref))
         single = replace(dof, anchor=ZERO, ref=0.0)
+        parent = compose(compose(view.parent_pose, at), displacement(single, -dof.ref))
         edges[key] = joint_edge(Joint((single,)), view.parent, view.child, parent, compose(view.child_pose, at))
     return mechanism.replace(edges=edges)
-
-
-def _moved_by(dof: Dof, coordinate: float) -> Pose:
-    if dof.kind is DofKind.SLIDE:
-        return Pose(scaled(dof.axis, coordinate))
-    if dof.kind is DofKind.SCREW:
-        return Pose(scaled(dof.axis, coordinate * dof.pitch), quat_about(dof.axis, coordinate))
-    return Pose(ZERO, quat_about(dof.axis, coordinate)) if dof.kind is DofKind.HINGE else Pose()
 
 
 def chain_joints(mechanism: Mechanism, context: Context) -> Mechanism:
