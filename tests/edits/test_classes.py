@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import hymeko_x as hx
@@ -36,3 +37,24 @@ def test_what_a_class_gives_beyond_the_fields_of_its_elements_is_reported(tmp_pa
     text, warnings = updated(tmp_path, 'group="2"', 'group="4"')
     given = '<default class="visual"><geom contype="0" conaffinity="0" group="4"/></default>'
     assert (text, warnings) == (ARM, [f"the edit did not arrive: mjcf classes: <default>{given}</default>"])
+
+
+HAND = """<mujoco model="hand">
+  <default> <geom type="box" size="0.1 0.1 0.1" pos="1 0 0" euler="0 0 90"/> </default>
+  <worldbody>
+    <body name="palm"> <geom name="skin"/> </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+def test_a_geom_whose_class_gives_a_pose_is_moved_to_its_body(tmp_path: Path) -> None:
+    original, there = tmp_path / "hand.xml", tmp_path / "hand.json"
+    original.write_text(HAND)
+    hx.convert(original, there)
+    text, number = re.subn(r',"weight":\{.*?\}', "", there.read_text())
+    assert number == 1
+    there.write_text(text)
+    hx.update(original, there)
+    assert original.read_text() == HAND.replace('"skin"', '"skin" pos="0 0 0" euler="0 0 0"')
+    assert hx.update(original, there).edits == ()

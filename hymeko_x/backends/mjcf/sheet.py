@@ -15,7 +15,7 @@ from msgspec import Struct, field
 
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import Classes, merge
-from hymeko_x.formats.mjcf.codec import POSE, BadAttribute, InheritedValues, Settings, parameter_text, parameter_value
+from hymeko_x.formats.mjcf.codec import POSE, BadAttribute, InheritedValues, Settings, parameter_text, parameter_value, undone
 from hymeko_x.formats.mjcf.notations import frame
 from hymeko_x.formats.mjcf.places import same_value
 from hymeko_x.formats.mjcf.schema import attributes_of
@@ -156,7 +156,8 @@ class MjcfSheet(Struct):
             if noted and self._means(group, merge(below, noted), value):
                 found |= noted
             elif not (self._means(group, below, value) if context else value is inherited or same_value(inherited, value)):
-                for name, text in group.write(value, self.settings).items():
+                texts = group.write(value, self.settings)
+                for name, text in {**texts, **undone(group, base, texts)}.items():
                     if base.get(name) != text:
                         found[name] = self._unsigned(name, text)
         return found

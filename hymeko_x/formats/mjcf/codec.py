@@ -260,6 +260,19 @@ POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose)
 SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose_or_ends, seen_pose)
 
 
+_AT_HOME: Mapping[str, str] = MappingProxyType(
+    {"pos": "0 0 0", "quat": "1 0 0 0", "euler": "0 0 0", "axisangle": "0 0 1 0", "xyaxes": "1 0 0 0 1 0", "zaxis": "0 0 1"}
+)
+"""The attributes of a pose that is none, which are written where a class gives another one."""
+
+
+def undone(group: Group, base: Mapping[str, str], texts: Mapping[str, str]) -> dict[str, str]:
+    """What undoes the position or the orientation of a class in an element that has none."""
+    is_turned = any(name in TURNS for name in texts)
+    lacking = [name for name in group.names if name in base and name in _AT_HOME and name not in texts]
+    return {name: _AT_HOME[name] for name in lacking if "fromto" not in texts and not (is_turned and name in TURNS)}
+
+
 # ---- plain groups ------------------------------------------------------------------------------------------------------------
 
 
