@@ -52,7 +52,6 @@ WITHOUT_TENDONS = frozenset({"urdf", "xacro", "sdf"})
 """The formats that have no tendons. MuJoCo draws those along a path: both pictures are drawn without them, and the rest is compared."""
 KNOWN: dict[str, str | tuple[str, ...]] = {
     "manipulate_block": "",  # an image with all six sides of a cube; other formats show all of it on each side
-    "hopper": "",  # thin lines, which MuJoCo draws on its patterns; other formats have the mean colour of a pattern
     "soccer_ball": "",  # a cube of six images; other formats have their mean colour
     "tests/assets/constraints": "sdf",  # loops that start open and hold free bodies: SDF has them as the joints, which are closed
 }

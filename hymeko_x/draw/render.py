@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 from ctypes.util import find_library
 from pathlib import Path
@@ -14,8 +13,8 @@ from msgspec import Struct
 
 from hymeko_x import api, codes, formats
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.draw.scene import COLLISION, FIELD_OF_VIEW, GROUND, VISUAL, add_scene, remove_surroundings
 from hymeko_x.ir.holder import mechanism_of
-from hymeko_x.rewrite.shapes import FACETS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -32,21 +31,7 @@ if TYPE_CHECKING:
     Picture = NDArray[np.uint8]
     """Rows, columns and three colours from 0 to 255."""
 
-_VISUAL = frozenset({0, 1, 2})
-_COLLISION = frozenset({3, 4, 5})
 _FRAMES_PER_JOINT = 24
-_GLOSS = (0.5, 0.5, 0.0)
-"""Specular, shininess and reflectance of what has no material."""
-_FIELD_OF_VIEW = 35.0
-"""The vertical angle of the camera in degrees: long enough that an arm does not look bent."""
-
-
-_AWAY = 8.0
-"""How many times its size from the robot the light is: near ones leave the ground dark at the edges of the picture."""
-_GROUND = "hymeko-x ground"
-"""The name of the ground, and of its material and texture."""
-_SHADOWED = 0.15
-"""The part of the light's cone in which shadows are drawn: so far away, about twice the robot."""
 
 
 class Look(Struct, frozen=True):
@@ -78,16 +63,16 @@ class Studio:
         self._name = name
         self._look = look
         if look.is_authored:
-            _remove_surroundings(spec)
+            remove_surroundings(spec)
         if like is not None:  # its scene fits this robot, which is compiled once then
-            _add_scene(spec, like.corners, look)
+            add_scene(spec, like.corners, look.size, is_compared=look.is_authored)
         self.model = _compiled(spec, name)
         self.data = mujoco.MjData(self.model)
         self._place(look.pose)
         self._groups = _groups(self.model, collision=look.collision)
         self.corners: Corners = self._own_corners() if like is None else like.corners
         if like is None:
-            _add_scene(spec, self.corners, look)
+            add_scene(spec, self.corners, look.size, is_compared=look.is_authored)
             self.model = _compiled(spec, name)
             placed, self.data = self.data, mujoco.MjData(self.model)
             self.data.qpos[:] = placed.qpos
@@ -135,7 +120,7 @@ class Studio:
         from hymeko_x.draw.camera import fitted_camera
 
         width, height = self._look.size
-        camera = fitted_camera(corners, self._look.view, width / height, _FIELD_OF_VIEW)
+        camera = fitted_camera(corners, self._look.view, width / height, FIELD_OF_VIEW)
         renderer = _renderer(self.model, width, height)
         if segmented:
             renderer.enable_segmentation_rendering()
@@ -252,99 +237,10 @@ def _positions(path: Path) -> Mapping[str, float]:
 def _groups(model: mujoco.MjModel, *, collision: bool) -> frozenset[int]:
     """The groups of geoms to draw: the visual ones, or those for collision where they are asked for or there are no others."""
     if collision:
-        return _COLLISION if any(group in _COLLISION for group in model.geom_group) else _VISUAL
-    own = [geom for geom in range(model.ngeom) if model.geom(geom).name != _GROUND]
+        return COLLISION if any(group in COLLISION for group in model.geom_group) else VISUAL
+    own = [geom for geom in range(model.ngeom) if model.geom(geom).name != GROUND]
     moving = [geom for geom in own if model.geom_bodyid[geom] != 0]
-    return _VISUAL if any(model.geom_group[geom] in _VISUAL for geom in (moving or own)) else _VISUAL | _COLLISION
-
-
-def _remove_surroundings(spec: Any) -> None:
-    """Take away sky, floors, terrain, gloss, skins and settings of the view, which other formats cannot represent.
-
-    The robot alone is compared.
-    """
-    import mujoco
-
-    for material in spec.materials:
-        material.specular, material.shininess, material.reflectance = _GLOSS
-    plain = mujoco.MjSpec().visual
-    for part in ("headlight", "map", "rgba", "quality"):
-        setattr(spec.visual, part, getattr(plain, part))
-    for texture in [texture for texture in spec.textures if texture.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX]:
-        spec.delete(texture)
-    if spec.skins:
-        _show_below_skins(spec)
-    for geom in spec.worldbody.geoms:
-        if geom.type in (mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_HFIELD):
-            geom.material, geom.rgba = "", [0.0] * 4
-
-
-def _show_below_skins(spec: Any) -> None:
-    """Skins away, and the shapes for the eye that they stand for, such as bones in a group that viewers hide, in a group that they show."""
-    for skin in tuple(spec.skins):
-        spec.delete(skin)
-    for geom in spec.geoms:
-        if not geom.contype and not geom.conaffinity and geom.group in _COLLISION:
-            geom.group = max(_VISUAL)
-
-
-def _add_scene(spec: Any, corners: Corners, look: Look) -> None:
-    """Add a sky, one light, and ground under the robot if it has none."""
-    import mujoco
-
-    spec.visual.global_.offwidth, spec.visual.global_.offheight = look.size
-    spec.visual.global_.fovy = _FIELD_OF_VIEW
-    spec.visual.headlight.ambient = [0.35] * 3
-    spec.visual.headlight.diffuse = [0.45] * 3
-    spec.visual.quality.shadowsize = 2048
-    spec.visual.quality.numslices, spec.visual.quality.numstacks = FACETS
-    spec.visual.map.znear = 0.01
-    if not any(texture.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX for texture in spec.textures):
-        gradient = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT
-        colours = {"rgb1": [0.93, 0.95, 0.98], "rgb2": [0.66, 0.72, 0.8]}
-        spec.add_texture(name="hymeko-x sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=gradient, width=256, height=1536, **colours)
-    for light in spec.lights:
-        spec.delete(light)  # so that a robot has the same picture in every format
-    centre = (corners.points.min(axis=0) + corners.points.max(axis=0)) / 2.0
-    spec.stat.center, spec.stat.extent = centre, corners.size  # else they are those of the collision shapes, and shadows end elsewhere
-    beam = (0.35, 0.3, -1.0)
-    light = spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_SPOT, castshadow=True, cutoff=89.0, exponent=0.0)
-    light.pos, light.dir = [at - _AWAY * corners.size * along for at, along in zip(centre, beam, strict=True)], beam
-    spec.visual.map.shadowscale = _SHADOWED
-    light.diffuse, light.specular = [0.6] * 3, [0.2] * 3
-    if look.is_authored or not any(geom.type == mujoco.mjtGeom.mjGEOM_PLANE for geom in spec.geoms):
-        _add_ground(spec, corners)
-
-
-def _add_ground(spec: Any, corners: Corners) -> None:
-    """A chequered plane just below the robot, with squares of a round size that suits it."""
-    import mujoco
-
-    square = 10.0 ** round(math.log10(corners.size / 5.0))
-    spec.add_texture(
-        name=_GROUND,
-        type=mujoco.mjtTexture.mjTEXTURE_2D,
-        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
-        width=256,
-        height=256,
-        rgb1=[0.86, 0.88, 0.9],
-        rgb2=[0.8, 0.83, 0.86],
-    )
-    plain = {"rgba": [1.0] * 4, "emission": 0.0, "specular": 0.5, "shininess": 0.5, "reflectance": 0.0}  # whatever the file's defaults are
-    material = spec.add_material(name=_GROUND, texuniform=True, texrepeat=[1.0 / (2.0 * square)] * 2, **plain)
-    material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = _GROUND
-    centre = corners.points.mean(axis=0)
-    spec.worldbody.add_geom(
-        name=_GROUND,
-        type=mujoco.mjtGeom.mjGEOM_PLANE,
-        size=[0.0, 0.0, square],
-        pos=[centre[0], centre[1], corners.lowest - 1e-4 * corners.size],
-        material=_GROUND,
-        rgba=[0.5, 0.5, 0.5, 1.0],  # which leaves the colour to the material
-        group=0,
-        contype=0,
-        conaffinity=0,
-    )
+    return VISUAL if any(model.geom_group[geom] in VISUAL for geom in (moving or own)) else VISUAL | COLLISION
 
 
 def _options(look: Look, groups: frozenset[int]) -> mujoco.MjvOption:

@@ -248,3 +248,14 @@ def test_a_robot_is_compared_without_its_terrain_and_the_rays_of_its_sensors(tmp
     (tmp_path / "r.xml").write_text(TERRAIN)
     found = renders.drawn(str(tmp_path / "r.xml"), targets=(formats.by_name("urdf"),))
     assert (found.reason, found.failed, found.faults) == ("", {}, [])
+
+
+MARKED = """<mujoco model="r"><asset><texture name="t" type="cube" builtin="flat" mark="cross" width="127" rgb1="0.8 0.6 0.4"
+  rgb2="0.8 0.6 0.4" markrgb="1 1 1"/><material name="m" texture="t"/></asset>
+<worldbody><body name="b" pos="0 0 1"><freejoint/><geom type="sphere" size="0.3" material="m"/></body></worldbody></mujoco>"""
+
+
+def test_a_robot_is_compared_without_the_marks_and_the_gloss_of_its_patterns(tmp_path: Path) -> None:
+    (tmp_path / "r.xml").write_text(MARKED)
+    found = renders.drawn(str(tmp_path / "r.xml"), targets=(formats.by_name("urdf"),))
+    assert (found.reason, found.failed, found.faults) == ("", {}, [])
