@@ -172,6 +172,7 @@ USD = Format(
     stated_notations=MappingProxyType({"pose on the stage": "usd.pose"}),
     names_are_identifiers=True,
     idle_extras=r'(?:over|def(?: Scope| Xform)?) "[^"\n]*"\s*\{\s*(?:float3\[\] extent = \[[^\]]*\]\s*)?\}',
+    settings="hymeko_x.formats.usd.settings:settings",
     precision=1e-6,  # eight roundings of single precision: numbers are converted between units and frames on the way
     missing_shapes=frozenset({"hfield"}),
     tokens="hymeko_x.formats.usd.tokens:tokens",

@@ -172,6 +172,8 @@ class Format(Struct, frozen=True):
     """Fields of the whole that every file of the format has, and no other."""
     idle_extras: str = ""
     """The pattern of the texts of extras that hold nothing of a robot: groups of nothing, and values that follow from others."""
+    settings: str | None = None
+    """The function ``text -> names``: what a report calls the content of an extra; None: the tag of an element, or the attribute."""
     precision: float = 0.0
     """How far a number that it stores may be off, as a part of the number, where it stores less than doubles: no loss in the ledger."""
     has_compact_extras: bool = False

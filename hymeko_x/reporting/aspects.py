@@ -31,6 +31,8 @@ class Aspect(Enum):
 
 
 _FORMS = ("chain", "frame")
+_COMPUTED_VALUES = ("none", "noshape()")
+"""What the source leaves to an engine, and the target has in numbers."""
 _COMPUTED = ("mass", "density")
 """Of a shape: from these an engine computes the inertia of its body, which is written out."""
 _DRAWN = ("material", "texture", "layer", "subset", "light")
@@ -58,7 +60,7 @@ def aspect_of(loss: Loss) -> Aspect:
         return Aspect.SETTINGS
     if loss.before is None and not field and _ONLY_SEEN.match(loss.after or ""):
         return Aspect.FORM
-    if field in _FORMS or loss.before == "none" or ((kind, field) == ("shape", "role") and loss.before == "both"):
+    if field in _FORMS or loss.before in _COMPUTED_VALUES or ((kind, field) == ("shape", "role") and loss.before == "both"):
         return Aspect.FORM
     last = field.rpartition(".")[2]
     if last == "name" or (last == "uri" and kind == "mesh"):

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
+from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x import diagnostics
+from hymeko_x import diagnostics, formats
 from hymeko_x.ir.values import number_text
 from hymeko_x.reporting.aspects import Aspect, aspect_of, kind_of
 from hymeko_x.reporting.values import error_of, size_of
@@ -120,6 +121,7 @@ def groups(losses: Iterable[Loss]) -> list[Group]:
         verb = "added" if loss.before is None and not loss.field else loss.fate
         found.setdefault((verb, kind_of(loss), word_of(loss.field)), []).append(loss)
     _replace_shapes(found)
+    _replace_capsules(found)
     whole = {(verb, kind) for verb, kind, field in found if not field}
     kept = [Group(*key, tuple(losses)) for key, losses in found.items() if not _goes_with_another(*key, whole)]
     return sorted(kept, key=_rank)
@@ -136,6 +138,25 @@ def _replace_shapes(found: dict[tuple[str, str, str], list[Loss]]) -> None:
         rest = [loss for loss in found.pop((key, "shape", "")) if _body(getattr(loss, text)) not in bodies]
         if rest:
             found[key, "shape", ""] = rest
+
+
+def _replace_capsules(found: dict[tuple[str, str, str], list[Loss]]) -> None:
+    """A capsule that is a cylinder now is approximated by it and by two spheres, which are new."""
+    changed: list[Loss] = []
+    capsules: list[Loss] = []
+    for loss in found.pop(("approximated", "shape", "geometry"), []):
+        is_capsule = (loss.before or "").startswith("capsule(") and (loss.after or "").startswith("cylinder(")
+        (capsules if is_capsule else changed).append(loss)
+    rest, ends = [], 2 * len(capsules)
+    for loss in found.pop(("added", "shape", ""), []):
+        is_end = ends > 0 and (loss.after or "").startswith("shape(geometry sphere(")
+        ends -= is_end
+        if not is_end:
+            rest.append(loss)
+    by_others = [*found.pop(("approximated", "shape", ""), []), *capsules]
+    for verb, field, losses in (("approximated", "geometry", changed), ("approximated", "", by_others), ("added", "", rest)):
+        if losses:
+            found[verb, "shape", field] = losses
 
 
 def _body(text: str | None) -> str:
@@ -243,14 +264,19 @@ def _settings(losses: Sequence[Loss]) -> Iterator[str]:
     for loss in losses:
         by_format.setdefault(loss.field.partition(" ")[0], []).append(loss)
     for format, found in by_format.items():
-        named = list(dict.fromkeys(map(_setting, found)))
+        named = list(dict.fromkeys(chain.from_iterable(_names_of_setting(loss, format) for loss in found)))
         shown = ", ".join([*named[: 2 * _EXAMPLES], *(["..."] if len(named) > 2 * _EXAMPLES else [])])
         verb = "dropped" if any(loss.before is not None for loss in found) else "added"
         yield f"{verb}: {counted(len(found), 'setting')} that only {format} has: {shown}"
 
 
-def _setting(loss: Loss) -> str:
-    """The name of an attribute, or the tag of an element."""
-    attribute = loss.field.rpartition("@")
-    tag = _TAG.match(loss.before or loss.after or "")
-    return attribute[2] if attribute[1] else f"<{tag[1]}>" if tag else loss.field.partition(" ")[2]
+def _names_of_setting(loss: Loss, format: str) -> list[str]:
+    """The name of an attribute, the tag of an element, or what the format calls it."""
+    _, is_attribute, name = loss.field.rpartition("@")
+    text = loss.before or loss.after or ""
+    if is_attribute:
+        return [name]
+    function = next((row.settings for row in formats.FORMATS if row.name == format), None)
+    named: list[str] = formats.loaded(function)(text) if function else []
+    tag = _TAG.match(text)
+    return named or [f"<{tag[1]}>" if tag else loss.field.partition(" ")[2]]

@@ -16,8 +16,10 @@ from hymeko_x.cli.report import MOST_LINES, brief_lines
 from hymeko_x.compare.ledger import Fate, Loss
 from hymeko_x.corpus import catalog
 from hymeko_x.diagnostics import Diagnostic, Origin, Severity
+from hymeko_x.formats.usd.settings import settings
 from hymeko_x.reporting.aspects import Aspect, aspect_of
 from hymeko_x.reporting.document import document
+from hymeko_x.reporting.summary import summary_lines
 from hymeko_x.reporting.values import error_of, values_of
 from tests.reporting.robots import biped
 
@@ -160,6 +162,49 @@ def test_no_report_is_longer_than_a_dozen_lines() -> None:
     assert brief_lines("", odd[:1], ()) == ["warning[HX020]: ", "  hint: mend it"]
 
 
+def test_a_capsule_is_approximated_by_a_cylinder_and_two_spheres() -> None:
+    cylinder = loss("shape 'shin'", "geometry", "capsule(radius 0.1, length 1)", "cylinder(radius 0.1, length 1)")
+    ends = [loss(f"shape 'shin#{n}'", "", None, "shape(geometry sphere(radius 0.1), role collision, ...) {+ body 'shin'}") for n in (2, 3)]
+    other = loss("shape 'box'", "geometry", "box(size [1 1 1])", "box(size [2 2 2])")
+    assert summary_lines([cylinder, *ends]) == ["approximated: 1 shape by other shapes: 'shin'"]
+    assert summary_lines([cylinder, *ends, *ends, other])[1:] == [
+        "approximated: geometry of 1 shape: 'box'",
+        "added: 2 shapes: 'shin#2', 'shin#3'",
+    ]
+
+
+STAGE = "#usda 1.0\n(\n    timeCodesPerSecond = 24\n)"
+SCENE = 'def PhysicsScene "scene"\n{\n    float physics:gravityMagnitude = 9.8\n}'
+OVER = """over "leg" (
+    prepend apiSchemas = ["PhysxLimitAPI:angular"]
+)
+{
+    custom float newton:testScalar = 1 (
+        customData = {
+            string assignment = "model"
+        }
+    )
+    rel physics:filteredPairs = </r/foot>
+}"""
+
+
+def test_settings_of_a_stage_are_called_by_types_schemas_and_properties() -> None:
+    losses = [
+        loss("mechanism", "usd /", STAGE, None),
+        loss("mechanism", "usd scene", SCENE, None),
+        loss("body 'leg'", "usd content", OVER, None),
+    ]
+    assert [setting for each in losses for setting in settings(each.before or "")] == [
+        "timeCodesPerSecond of the stage",
+        "PhysicsScene",
+        "PhysxLimitAPI:angular",
+        "newton:testScalar",
+        "physics:filteredPairs",
+    ]
+    shown = "timeCodesPerSecond of the stage, PhysicsScene, PhysxLimitAPI:angular, newton:testScalar, ..."
+    assert summary_lines(losses) == [f"dropped: 3 settings that only usd has: {shown}"]
+
+
 # ---- what a loss is ------------------------------------------------------------------------------------------------------
 
 
@@ -188,6 +233,7 @@ def loss(element: str, field: str, before: str | None, after: str | None, fate: 
         (loss("shape 'a'", "role", "both", "visual, and collision as 'b'"), Aspect.FORM),
         (loss("shape 'a'", "role", "collision", "visual"), Aspect.PHYSICS),
         (loss("mesh 'a'", "scale", "[1 1 1]", "[2 2 2]"), Aspect.PHYSICS),
+        (loss("shape 'a'", "geometry", "noshape()", "capsule(radius 1, length 1)"), Aspect.FORM),
         (loss("mesh 'a'", "content.texture coordinates", "0", "300"), Aspect.APPEARANCE),
         (loss("mesh 'a'", "content.distance", "0", "0.1"), Aspect.PHYSICS),
         (loss("mesh 'a_2'", "", None, "mesh(uri 'a_2.obj')"), Aspect.FORM),
