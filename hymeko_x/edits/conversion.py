@@ -15,7 +15,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.edits.classes import edited_classes, with_made_classes
 from hymeko_x.edits.differences import aim, has_other_forms, is_lost_name, is_of_asset, is_of_extra, is_telling, is_value_of_shape
 from hymeko_x.edits.poses import with_edited_poses
-from hymeko_x.edits.unnamed import stem, unnamed_bodies, with_same_assets, with_same_numbers
+from hymeko_x.edits.unnamed import stem, unnamed_bodies, unnamed_edges, with_same_assets, with_same_edges, with_same_numbers
 from hymeko_x.edits.weights import with_computed_gains, with_least_masses, without_followed
 from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, Mechanism
 from hymeko_x.ir.names import rename
@@ -126,7 +126,10 @@ class Conversion:
         if self._first_image is None:
             self._first_image, self._first_original = image, self.mechanism
         read = with_made_classes(self._read, image, self._first_original, self.format)
-        edited = with_same_assets(with_same_numbers(read, image, self._unnamed_bodies()), image)
+        numbered = with_same_edges(
+            with_same_numbers(read, image, self._unnamed_bodies()), image, self._in_image(unnamed_edges(self.mechanism))
+        )
+        edited = with_same_assets(numbered, image)
         sources = {key: self.mechanism.graph.vertices.get(self._homes.get(key, key)) for key, _ in edited.vertices(Actuator)}
         return with_computed_gains(with_least_masses(edited, image), self._first_image, image, sources)
 

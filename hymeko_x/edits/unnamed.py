@@ -1,4 +1,7 @@
-"""Bodies to which their author gave no name: the numbers in their names say only where they stand, so they are found by what they are."""
+"""Elements to which their author gave no name: the numbers in their names say only where they stand.
+
+Bodies are found by what they are, contacts and closures by what they join.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,9 @@ from hymeko_x.rewrite.references import with_references
 if TYPE_CHECKING:
     from collections.abc import Set
 
-    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+
+_JOINING = frozenset({"contact", "loop", "coupling"})
 
 
 def unnamed_bodies(robot: Mechanism) -> set[Id]:
@@ -83,6 +88,31 @@ def _content(robot: Mechanism, body: Id) -> object:
     shapes = [essence_of(robot.graph, robot.graph.edges[shape.id]) for shape in robot.shapes.get(body, ())]
     joint = [(dof.kind, rounded(dof.axis)) for dof in view.joint.dofs]
     return rounded(view.parent_pose), rounded(view.child_pose), tuple(joint), rounded(robot.vertex(body, Body)), tuple(shapes)
+
+
+def unnamed_edges(robot: Mechanism) -> set[Id]:
+    """The contacts, closures and couplings that have no name in the robot's format."""
+    return {key for key in robot.graph.edges if key.kind in _JOINING and robot.notation(key, UNNAMED) is not None}
+
+
+def with_same_edges(edited: Mechanism, image: Mechanism, unnamed: Set[Id]) -> Mechanism:
+    """The edited robot, in which each of these edges has the number that it has in the image. Linear.
+
+    Those are the same that join the same elements, if they are called alike but for a number.
+    """
+    mine, theirs = ({key: _joined(key, edge) for key, edge in robot.graph.edges.items()} for robot in (edited, image))
+    waiting: dict[object, list[Id]] = defaultdict(list)
+    for key in reversed([key for key in theirs if key in unnamed and mine.get(key) != theirs[key]]):
+        waiting[theirs[key]].append(key)
+    names: dict[Id, Id] = {}
+    for key, ends in mine.items() if waiting else ():
+        if ends in waiting and theirs.get(key) != ends and waiting[ends] and stem(waiting[ends][-1]) == stem(key):
+            names[key] = waiting[ends].pop()
+    return rename(edited, names | _made_way(edited, names))
+
+
+def _joined(key: Id, edge: RobotEdge) -> object:
+    return key.kind, tuple([(arc.target, arc.sign, arc.role) for arc in edge.arcs])
 
 
 def with_same_assets(edited: Mechanism, image: Mechanism) -> Mechanism:

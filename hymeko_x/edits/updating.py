@@ -19,7 +19,7 @@ from hymeko_x.diagnostics import Origin, Refusal, Report, counted, listed, refus
 from hymeko_x.edits.conversion import Conversion, new_assets
 from hymeko_x.edits.differences import is_given_again, is_inherited, is_weight
 from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
-from hymeko_x.edits.unnamed import unnamed_bodies, with_same_numbers
+from hymeko_x.edits.unnamed import unnamed_bodies, unnamed_edges, with_same_edges, with_same_numbers
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import Body, Mesh, Shape, Texture
 from hymeko_x.residue.pairing import other_names
@@ -127,6 +127,7 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
     report.extend(conversion.notes)
     old = {path: original.data if path == original.name else original.files.read(path) for path in changed}
     robot = with_same_numbers(found.before, first.before, unnamed_bodies(first.before))
+    robot = with_same_edges(robot, first.before, unnamed_edges(first.before))
     edits = diff(first.before, rename(robot, _called_after(first.before, robot)), TOLERANCE)
     return Updated(replace(found.before, origins=first.before.origins), edits, original.data, changed, old, beside, report)
 
