@@ -127,6 +127,10 @@ class Source(Struct, frozen=True):
         """The name of the file without folders and suffix: the name of a robot that has none of its own."""
         return PurePath(self.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
 
+    def is_whole(self, inside: str) -> bool:
+        """Whether the file has all of the robot: nothing is kept inside of it (the text ``inside`` is empty), nor beside it."""
+        return not inside and (self.kept is None or self.ignores_kept)
+
 
 class Reading(NamedTuple):
     """What a frontend reads: the mechanism, and the text of the residue that is kept inside the file (empty = none)."""

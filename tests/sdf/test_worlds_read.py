@@ -69,3 +69,14 @@ def test_a_world_without_models_is_a_scene() -> None:
     sun = '<sdf version="1.9"><world name="w"><light name="sun" type="directional"/></world></sdf>'
     assert '<light name="sun"' in hx.dumps(hx.loads(sun, "sdf"), "sdf")
     assert "<light" in hx.dumps(hx.loads(sun, "sdf"), "mjcf")
+
+
+@pytest.mark.unread("HX045", "HX055", "HX104")
+@pytest.mark.parametrize("keep", ["beside", "inside"])
+@pytest.mark.parametrize("name", ["m.urdf", "m.xacro", "m.usda", "m.xml"])
+def test_a_world_without_links_comes_back_from_what_is_kept(name: str, keep: str, tmp_path: Path) -> None:
+    text = '<sdf version="1.9"><world name="w"><scene><sky/></scene></world></sdf>'
+    (tmp_path / "w.sdf").write_text(text, "utf-8")
+    hx.convert(tmp_path / "w.sdf", tmp_path / name, keep=keep)
+    hx.convert(tmp_path / name, tmp_path / "back.sdf")
+    assert [line for line in canonical((tmp_path / "back.sdf").read_bytes()) if "made by" not in line] == canonical(text.encode())

@@ -51,7 +51,7 @@ def read(source: Source, report: Report) -> Reading:
         read_transmission(node, builder)
     read_ros2_control(root, builder)
     finish_materials(builder)
-    check_structure(root, builder, carries=bool("".join(carried)))
+    check_structure(root, builder, is_whole=source.is_whole("".join(carried)))
     _check_templates(root, builder)
     builder.add_extras(ROOT, *read_srdf(source, builder))
     return Reading(builder.finish(name, extras_around(document, words.FORMAT), source.name), "".join(carried))

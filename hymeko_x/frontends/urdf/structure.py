@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from hymeko_x.xml.tree import Node
 
 
-def check_structure(root: Node, builder: UrdfBuilder, *, carries: bool) -> None:
+def check_structure(root: Node, builder: UrdfBuilder, *, is_whole: bool) -> None:
     """Report everything that keeps the links and joints from being one tree. Linear, not recursive.
 
-    ``carries``: the file carries a residue, which may be all of a system without links.
+    ``is_whole``: nothing is kept for the file, which may be all of a system without links.
     """
     bodies = [key for key, part in builder.vertices.items() if isinstance(part, Body)]
-    if not bodies and not carries:
+    if not bodies and is_whole:
         builder.report.error(codes.MISSING_PART, "the robot has no links; the result has no bodies", root.origin)
         return
     parents: dict[Id, list[Id]] = {}

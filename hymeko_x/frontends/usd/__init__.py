@@ -65,7 +65,7 @@ def read(source: Source, report: Report) -> Reading:
         _read_mounted(prims, _read_joints(prims, bare, builder), builder)
         note_poses(builder)
         gather_extras(builder)
-        return Reading(_finished(scene, builder, carries=bool(residue)), residue)
+        return Reading(_finished(scene, builder, is_whole=source.is_whole(residue)), residue)
 
 
 def _take_residue(scene: Scene) -> str:
@@ -149,7 +149,7 @@ def _is_fixed(prim: Prim) -> bool:
     return prim.value("physics:rigidBodyEnabled") is False or prim.value("physics:kinematicEnabled") is True
 
 
-def _finished(scene: Scene, builder: UsdBuilder, *, carries: bool) -> Mechanism:
+def _finished(scene: Scene, builder: UsdBuilder, *, is_whole: bool) -> Mechanism:
     default = scene.stage.GetDefaultPrim()
     first = next(iter(builder.bodies), "")
     root = default or scene.stage.GetPrimAtPath("/" + first.split("/")[1] if first else "/")
@@ -157,9 +157,9 @@ def _finished(scene: Scene, builder: UsdBuilder, *, carries: bool) -> Mechanism:
     name = str(default.GetName()) if default else builder.source.stem
     if root and not root.IsPseudoRoot():
         builder.note(ROOT, words.ROOT_PRIM, str(root.GetPath()))
-    if not builder.bodies and not builder.edges and not carries:
+    if not builder.bodies and not builder.edges and is_whole:
         builder.report.error(codes.MISSING_PART, "the stage has no rigid bodies, joints or shapes; the result is empty", origin)
-    elif not builder.bodies and not carries:
+    elif not builder.bodies and is_whole:
         builder.report.warn(codes.MISSING_PART, "the stage has no rigid bodies; what it has belongs to the world", origin)
     return replace(builder.build(name, Provenance(words.FORMAT, file=builder.source.name)), places=dict(_packed_images(builder)))
 
