@@ -63,12 +63,17 @@ def aspect_of(loss: Loss) -> Aspect:
     if field in _FORMS or loss.before in _COMPUTED_VALUES or ((kind, field) == ("shape", "role") and loss.before == "both"):
         return Aspect.FORM
     last = field.rpartition(".")[2]
-    if last == "name" or (last == "uri" and kind == "mesh"):
+    if last == "name" or (last == "uri" and kind == "mesh") or (last == "role" and _is_number_or_name(loss)):
         return Aspect.NAME
     if (last in _DRAWN_FIELDS and kind in ("shape", "tendon")) or (last in _DRAWN_CONTENT and kind == "mesh"):
         return Aspect.APPEARANCE
     is_computed = (kind == "shape" and field in _COMPUTED) or (kind == "mesh" and field in MESH_POINTS)
     return Aspect.FORM if is_computed else Aspect.PHYSICS
+
+
+def _is_number_or_name(loss: Loss) -> bool:
+    """Whether a dof, which is the role of an arc, has its number on one side and a name on the other."""
+    return [(text or "").strip("'").isdigit() for text in (loss.before, loss.after)] in ([True, False], [False, True])
 
 
 def kind_of(loss: Loss) -> str:

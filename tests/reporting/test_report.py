@@ -233,6 +233,8 @@ def loss(element: str, field: str, before: str | None, after: str | None, fate: 
         (loss("shape 'a'", "role", "both", "visual, and collision as 'b'"), Aspect.FORM),
         (loss("shape 'a'", "role", "collision", "visual"), Aspect.PHYSICS),
         (loss("mesh 'a'", "scale", "[1 1 1]", "[2 2 2]"), Aspect.PHYSICS),
+        (loss("drive 'a'", "[1].role", "'0'", "'a_TX'"), Aspect.NAME),
+        (loss("drive 'a'", "[1].role", "'0'", "'1'"), Aspect.PHYSICS),
         (loss("shape 'a'", "geometry", "noshape()", "capsule(radius 1, length 1)"), Aspect.FORM),
         (loss("mesh 'a'", "content.texture coordinates", "0", "300"), Aspect.APPEARANCE),
         (loss("mesh 'a'", "content.distance", "0", "0.1"), Aspect.PHYSICS),
