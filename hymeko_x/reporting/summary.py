@@ -56,6 +56,7 @@ _WORDS = {
 _PLACE = re.compile(r"\[\d+\]")
 _TAG = re.compile(r"<([\w:.-]+)")
 _ON = re.compile(r"\+ ((?:body|world) '[^']*')")
+_NUMBERS = re.compile(r"\[[^\]]{0,24}\]")
 _WORD = re.compile(r"([a-z]+)(?:\(|$)")
 
 
@@ -230,8 +231,11 @@ def _amount(group: Group) -> str:
 
 
 def _change(group: Group) -> str:
-    """What the first of them was, and what it became, where both are a word."""
-    before, after = (_WORD.match((text or "").strip("'")) for text in group.losses[0][2:4])
+    """What the first of them was, and what it became, where both are a word or a few numbers."""
+    texts = group.losses[0].before or "", group.losses[0].after or ""
+    if all(map(_NUMBERS.fullmatch, texts)):
+        return f" ({texts[0]} -> {texts[1]})"
+    before, after = (_WORD.match(text.strip("'")) for text in texts)
     return f" ({_bare(before[1])} -> {_bare(after[1])})" if before and after and before[1] != after[1] else ""
 
 

@@ -173,6 +173,11 @@ def test_a_capsule_is_approximated_by_a_cylinder_and_two_spheres() -> None:
     ]
 
 
+def test_numbers_that_became_fewer_are_shown() -> None:
+    found = loss("shape 'foot'", "friction", "[1.5 0.1 0.1]", "[1.5]")
+    assert summary_lines([found]) == ["approximated: friction of 1 shape ([1.5 0.1 0.1] -> [1.5]): 'foot'"]
+
+
 STAGE = "#usda 1.0\n(\n    timeCodesPerSecond = 24\n)"
 SCENE = 'def PhysicsScene "scene"\n{\n    float physics:gravityMagnitude = 9.8\n}'
 OVER = """over "leg" (
