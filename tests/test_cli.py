@@ -52,6 +52,14 @@ def test_a_mistyped_verb_is_a_usage_error_with_the_nearest_one(capsys: pytest.Ca
     assert capsys.readouterr().err == "hymeko-x: there is no verb 'conver'; did you mean 'convert'?\n"
 
 
+def test_a_file_in_the_place_of_a_verb_is_met_with_the_verbs_for_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "r.urdf"
+    file.write_text("<robot/>")
+    assert main([str(file)]) == exits.USAGE
+    meant = f"it is a file: 'hymeko-x info {file}' shows what is in it, 'hymeko-x convert {file} OUT' writes another format"
+    assert capsys.readouterr().err == f"hymeko-x: there is no verb '{file}'; {meant}\n"
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -157,6 +157,8 @@ def _unknown_verb(word: str) -> int:
 
     near = get_close_matches(word, [*VERBS], 1)
     meant = f"did you mean '{near[0]}'?" if near else f"verbs: {', '.join(VERBS)}"
+    if os.path.exists(word):
+        meant = f"it is a file: 'hymeko-x info {word}' shows what is in it, 'hymeko-x convert {word} OUT' writes another format"
     print(f"hymeko-x: there is no verb '{word}'; {meant}", file=sys.stderr)
     return exits.USAGE
 

@@ -139,7 +139,7 @@ def _is_folder(path: str) -> bool:
 def _convert(chosen: argparse.Namespace, source: str, output: str) -> int:
     """Convert one file."""
     if output == "-" and not (chosen.to_format or chosen.target):
-        raise UsageError("say which format to write to standard output: --to FORMAT")
+        raise UsageError("name the output file behind the input, or say which format to write to standard output: --to FORMAT")
     if output == "-" and chosen.json:
         raise UsageError("--json prints to standard output, which already carries the result; use --report FILE.json")
     if chosen.verify and "-" in (source, output):
