@@ -64,7 +64,7 @@ def one_line(written: str, report: Report, losses: Sequence[Loss]) -> str:
 
 def brief_lines(written: str, report: Iterable[Diagnostic], losses: Sequence[Loss], *, coloured: bool = False) -> list[str]:
     """The report in at most a dozen lines: what was written, problems, losses, notes, and how to see the rest."""
-    alike = sorted(alike_diagnostics(report), key=lambda group: -group[0].severity.rank)
+    alike = sorted(alike_diagnostics(report), key=_weight, reverse=True)
     rendered = [(group[0].severity is Severity.NOTE, render_alike(group, coloured).splitlines()) for group in alike]
     problems, notes = ([lines for is_note, lines in rendered if is_note is wanted] for wanted in (False, True))
     lost, ends = summary_lines(losses), _non_empty(kept_line(losses), minor_line(losses))
@@ -79,6 +79,12 @@ def brief_lines(written: str, report: Iterable[Diagnostic], losses: Sequence[Los
         rest = f"{counted(left, 'more kind')}; " if left else ""
         lines.append(f"{rest}-v lists each with its place, --report FILE.json has all")
     return lines
+
+
+def _weight(alike: Sequence[Diagnostic]) -> tuple[int, int]:
+    """Errors before warnings before notes; of the first two those that there are most of."""
+    severity = alike[0].severity
+    return severity.rank, 0 if severity is Severity.NOTE else len(alike)
 
 
 def _flat(groups: list[list[str]]) -> list[str]:

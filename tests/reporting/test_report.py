@@ -162,6 +162,15 @@ def test_no_report_is_longer_than_a_dozen_lines() -> None:
     assert brief_lines("", odd[:1], ()) == ["warning[HX020]: ", "  hint: mend it"]
 
 
+def test_the_most_frequent_warnings_come_first() -> None:
+    rare = [Diagnostic(codes.BAD_NUMBER, Severity.WARNING, f"{'x' * i} is odd") for i in range(1, 5)]
+    frequent = [Diagnostic(codes.ASSET_NOT_FOUND, Severity.WARNING, f"mesh 'm{i}' is not found") for i in range(20)]
+    error = Diagnostic(codes.BAD_NUMBER, Severity.ERROR, "worse")
+    lines = brief_lines("", [*rare, *frequent, error], ())
+    assert [line.partition(":")[0] for line in lines[:3]] == ["error[HX020]", "warning[HX201]", "warning[HX020]"]
+    assert "(19 more alike)" in lines[1]
+
+
 def test_a_capsule_is_approximated_by_a_cylinder_and_two_spheres() -> None:
     cylinder = loss("shape 'shin'", "geometry", "capsule(radius 0.1, length 1)", "cylinder(radius 0.1, length 1)")
     ends = [loss(f"shape 'shin#{n}'", "", None, "shape(geometry sphere(radius 0.1), role collision, ...) {+ body 'shin'}") for n in (2, 3)]
