@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
@@ -11,7 +12,7 @@ from hymeko_x.ir.kinematics import displacement
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, numbers_weight, pose_weight
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import MESH_POINTS, Body, DofKind, Joint, Layer, Material, Mesh, Mount, Sense, Shape, Stance
-from hymeko_x.ir.values import ZERO, X, Z, apply, compose, cross, inverse, rotate, rotation_angle
+from hymeko_x.ir.values import ZERO, X, Y, Z, apply, compose, cross, inverse, rotate, rotation_angle, scaled
 from hymeko_x.rewrite.efforts import actuator_efforts
 from hymeko_x.rewrite.sites import is_link
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from hymeko_x.compare.diff import Difference, Tolerance
-    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge, ShapeView
     from hymeko_x.ir.parts import Dof, Rgba
     from hymeko_x.ir.values import Pose, Vec3
 
@@ -48,45 +49,68 @@ def in_fragments(found: Collection[Difference], before: Mechanism, after: Mechan
 
 
 def relevant(
-    found: Iterable[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance, is_held: Judge = lambda _: False
+    found: Collection[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance, is_held: Judge = lambda _: False
 ) -> Iterator[Difference]:
     """The differences from ``before`` to ``after`` without those that are none of the robot.
 
     No loss is: another axis of a ball or a free joint, which has none; another mass or density of a shape without one, on the world or
     on a body whose mass and tensor are given; a centre of mass and a tensor that HyMeKo text leaves to the shapes; other frames of a joint
-    that moves its body alike; the colour of a material on the shape itself; an effort limit that is what the actuators of the source can
-    exert; a frame that is where the body of its name is; an extra that holds nothing; a pose that is a keyframe; a sensor, a camera or a
-    text that is held in a fragment, as ``is_held`` says. What an author wrote counts, used or not.
+    that moves its body alike; the colour of a material on the shape itself; another axis along which a turned mesh is mirrored; an effort
+    limit that is what the actuators of the source can exert; a frame that is where the body of its name is; an extra that holds nothing; a
+    pose that is a keyframe; a sensor, a camera or a text that is held in a fragment, as ``is_held`` says. What an author wrote counts,
+    used or not.
     """
-    alike: dict[Id, bool] = {}
-    native = formats.native_format(before)
-    efforts = actuator_efforts(before)
-    colours = _colours(before)
-    described = {*_links(before, after), *_keyframes(before, after, tolerance)}
-    if native is None or native.held is None:
-        described |= {*_in_fragments(before, after)}
-    weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
+    is_none = _Relevance(found, before, after, tolerance).is_none
     for difference in found:
-        key = difference.element
-        if _is_described_otherwise(difference, before, after) or is_idle(difference):
-            continue
-        if not difference.field and difference.after is None and key in described:
-            continue
-        if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _needs_no_weight(before, key, difference.field):
-            continue
-        if native is None and _is_weight_of_shapes(before, difference):
-            continue
-        if colours and key.kind == "shape" and _has_colour_of_material(before, after, difference, colours):
-            continue
-        if efforts and _is_effort_of_actuators(difference, after, efforts, tolerance):
-            continue
-        if key.kind == "joint" and _FRAMES.fullmatch(difference.field):
-            if key not in alike:
-                alike[key] = _move_alike(before.graph.edges[key], after.graph.edges[key], tolerance)
-            if alike[key] and not _is_idle_axis(before, difference):
-                continue
-        if _is_of_robot(difference) or not is_held(difference):
+        if not is_none(difference) and (_is_of_robot(difference) or not is_held(difference)):
             yield difference
+
+
+class _Relevance:
+    """What is known of two robots before their differences are judged one by one."""
+
+    def __init__(self, found: Collection[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance) -> None:
+        self.before, self.after, self.tolerance = before, after, tolerance
+        self.native = native = formats.native_format(before)
+        self.efforts = actuator_efforts(before)
+        self.colours = _colours(before)
+        self.turned = frozenset(_in_other_axes(before, after, found, tolerance))
+        self.described = {*_links(before, after), *_keyframes(before, after, tolerance)}
+        if native is None or native.held is None:
+            self.described |= {*_in_fragments(before, after)}
+        self.weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
+        self._alike: dict[Id, bool] = {}
+
+    def is_none(self, difference: Difference) -> bool:
+        """Whether a difference is none of the robot."""
+        key, field = difference.element, difference.field
+        if _is_described_otherwise(difference, self.before, self.after) or is_idle(difference):
+            return True
+        if not field and difference.after is None and key in self.described:
+            return True
+        if key in self.turned and (field == "scale" or field.startswith("[0].weight")):
+            return True
+        if key.kind == "shape" and self._is_none_of_shape(difference):
+            return True
+        if self.native is None and _is_weight_of_shapes(self.before, difference):
+            return True
+        if self.efforts and _is_effort_of_actuators(difference, self.after, self.efforts, self.tolerance):
+            return True
+        return key.kind == "joint" and self._moves_alike(difference)
+
+    def _is_none_of_shape(self, difference: Difference) -> bool:
+        if difference.field in _WEIGHTS and self.weighed and _needs_no_weight(self.before, difference.element, difference.field):
+            return True
+        return bool(self.colours) and _has_colour_of_material(self.before, self.after, difference, self.colours)
+
+    def _moves_alike(self, difference: Difference) -> bool:
+        """Whether it is in the frames or axes of a joint that moves its body alike."""
+        key = difference.element
+        if not _FRAMES.fullmatch(difference.field):
+            return False
+        if key not in self._alike:
+            self._alike[key] = _move_alike(self.before.graph.edges[key], self.after.graph.edges[key], self.tolerance)
+        return self._alike[key] and not _is_idle_axis(self.before, difference)
 
 
 def is_idle(difference: Difference) -> bool:
@@ -186,6 +210,28 @@ def _is_weight_of_shapes(mechanism: Mechanism, difference: Difference) -> bool:
         and difference.field.startswith(("inertial.com", "inertial.tensor"))
         and bool(mechanism.shapes.get(difference.element))
     )
+
+
+def _in_other_axes(before: Mechanism, after: Mechanism, found: Iterable[Difference], tolerance: Tolerance) -> Iterator[Id]:
+    """Meshes with another scale, and their shapes, where these have another rotation so that every point is where it was.
+
+    A mirrored mesh is mirrored along another axis and turned by half a turn.
+    """
+    scaled_anew = {each.element for each in found if each.field == "scale" and each.element.kind == "mesh"}
+    users, others = (robot.shapes_by_mesh() if scaled_anew else {} for robot in (before, after))
+    for mesh in scaled_anew:
+        pairs = list(zip_longest(users.get(mesh, ()), others.get(mesh, ())))
+        if pairs and all(a and b and a.id == b.id and _are_in_place(a, b, mesh, before, after, tolerance) for a, b in pairs):
+            yield from (mesh, *(view.id for view, _ in pairs))
+
+
+def _are_in_place(a: ShapeView, b: ShapeView, mesh: Id, before: Mechanism, after: Mechanism, tolerance: Tolerance) -> bool:
+    """Whether the scaled axes of a mesh point where they did, from the same place."""
+    ends = []
+    for view, robot in ((a, before), (b, after)):
+        x, y, z = robot.vertex(mesh, Mesh).scale
+        ends.append([apply(view.pose, end) for end in (ZERO, scaled(X, x), scaled(Y, y), scaled(Z, z))])
+    return all(_near(one, other, tolerance) for one, other in zip(*ends, strict=True))
 
 
 def _colours(mechanism: Mechanism) -> dict[Id, Rgba | None]:

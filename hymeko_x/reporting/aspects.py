@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import re
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from hymeko_x import formats
 from hymeko_x.ir.parts import MESH_POINTS
+from hymeko_x.reporting.values import error_of, is_extra
+from hymeko_x.rewrite.inertia import LEAST
 
 if TYPE_CHECKING:
     from hymeko_x.compare.ledger import Loss
@@ -57,7 +59,9 @@ def aspect_of(loss: Loss) -> Aspect:
     if kind == "frame" and (field == "size" or _DRAWN_EXTRAS.search(field)):
         return Aspect.APPEARANCE
     if is_extra(loss):
-        return Aspect.SETTINGS
+        return Aspect.SETTINGS if loss.before is not None else Aspect.FORM  # the words of the target for what the source has as well
+    if kind == "body" and field.startswith("inertial.") and (error_of(loss) or math.inf) <= 2.0 * LEAST:
+        return Aspect.FORM
     if loss.before is None and not field and _ONLY_SEEN.match(loss.after or ""):
         return Aspect.FORM
     if field in _FORMS or loss.before in _COMPUTED_VALUES or ((kind, field) == ("shape", "role") and loss.before == "both"):
@@ -79,9 +83,3 @@ def _is_number_or_name(loss: Loss) -> bool:
 def kind_of(loss: Loss) -> str:
     """The kind of a loss's element: ``joint`` of ``joint 'elbow'``."""
     return loss.element.partition(" ")[0]
-
-
-def is_extra(loss: Loss) -> bool:
-    """Whether it is an extra, whose field begins with the name of its format."""
-    format, blank, _ = loss.field.partition(" ")
-    return bool(blank) and (format == "comment" or any(format == row.name for row in formats.FORMATS))

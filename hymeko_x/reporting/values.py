@@ -7,8 +7,8 @@ import re
 from ast import literal_eval
 from typing import TYPE_CHECKING
 
+from hymeko_x import formats
 from hymeko_x.ir.values import rotation_angle
-from hymeko_x.reporting.aspects import is_extra
 
 if TYPE_CHECKING:
     from hymeko_x.compare.ledger import Loss
@@ -61,3 +61,9 @@ def size_of(loss: Loss) -> float | None:
     numbers = [before] if isinstance(before, float) else before if isinstance(before, list) else []
     found = [abs(number) for number in numbers if math.isfinite(number)]
     return max(found, default=None)
+
+
+def is_extra(loss: Loss) -> bool:
+    """Whether it is an extra, whose field begins with the name of its format."""
+    format, blank, _ = loss.field.partition(" ")
+    return bool(blank) and (format == "comment" or any(format == row.name for row in formats.FORMATS))

@@ -94,15 +94,14 @@ class _Pairs:
             return
         unsure = self.doubtful & self.strange
         for key, edge in self.image.edges.items():
-            strange = [arc for arc in edge.arcs if arc.target in self.strange and arc.target not in unsure] if key not in unsure else []
-            other = self.source.edges.get(self.names.get(key, key)) if strange else None
+            is_strange = key not in unsure and any(arc.target in self.strange and arc.target not in unsure for arc in edge.arcs)
+            other = self.source.edges.get(self.names.get(key, key)) if is_strange else None
             if other is None:
                 continue
-            ends = {(arc.sign, arc.role): arc.target for arc in other.arcs}
-            for arc in strange:
-                target = ends.get((arc.sign, arc.role))
-                if target is not None:
-                    self.pair(arc.target, target)
+            ends = _ends_by_place(other)
+            for place, target in _ends_by_place(edge).items():
+                if target in self.strange and target not in unsure and place in ends:
+                    self.pair(target, ends[place])
 
     def match_edges(self, *, with_layers: bool) -> None:
         """Edges of the same kind between the same elements; layers once their materials are known from the shapes that have them."""
@@ -161,6 +160,17 @@ class _Pairs:
             return key.kind, edge.data, tuple(known or [_file_of(graph, arc.target) for arc in edge.arcs])
         targets = [names.get(arc.target, arc.target) for arc in edge.arcs if arc.target.kind not in ("mesh", "material", "texture")]
         return key.kind, tuple([target.kind if target.kind in _PLACED and target.name == key.name else target for target in targets])
+
+
+def _ends_by_place(edge: RobotEdge) -> dict[object, Id]:
+    """What the arcs of an edge lead to, by sign, role, and number among such arcs: a tendon has many."""
+    counts: dict[object, int] = defaultdict(int)
+    found: dict[object, Id] = {}
+    for arc in edge.arcs:
+        place = arc.sign, arc.role
+        found[place, counts[place]] = arc.target
+        counts[place] += 1
+    return found
 
 
 def _doubtful(image: RobotGraph, source: RobotGraph) -> Iterator[Id]:

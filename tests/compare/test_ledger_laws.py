@@ -20,7 +20,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import WORLD, Extra, Id, Mechanism, RobotEdge, joint_edge, shape_edge
 from hymeko_x.ir.parts import Rgba
-from hymeko_x.ir.values import Pose, Vec3, X, Y, Z, compose, inverse, rotate, scaled
+from hymeko_x.ir.values import Pose, Quat, Vec3, X, Y, Z, compose, inverse, rotate, scaled
 from hymeko_x.residue import Alignment
 from hymeko_x.residue.realign import alignment_differences
 from hymeko_x.rewrite import Options
@@ -259,6 +259,23 @@ def test_a_reference_that_is_in_the_frames_is_a_loss_and_the_frames_are_none() -
     found = diff(before, after, ledger.TOLERANCE)
     assert {difference.field for difference in found} == {"dofs[0].anchor", "dofs[1].ref", "[0].weight"}
     assert [difference.field for difference in relevant(found, before, after, ledger.TOLERANCE)] == ["dofs[1].ref"]
+
+
+@pytest.mark.parametrize(("turn", "told"), [((0.0, 0.0, 0.0, 1.0), []), ((1.0, 0.0, 0.0, 0.0), ["scale"])])
+def test_a_mesh_that_is_mirrored_along_another_axis_and_turned_is_where_it_was(turn: Quat, told: list[str]) -> None:
+    mesh, shape = Id("mesh", "arm"), Id("shape", "a/visual")
+    seen = parts.Shape(parts.MeshShape(), parts.Role.VISUAL)
+    before, after = (
+        Mechanism(
+            "r",
+            Hypergraph(
+                {Id("body", "a"): parts.Body(), mesh: parts.Mesh("arm.stl", scale)}, {shape: shape_edge(seen, Id("body", "a"), pose, mesh)}
+            ),
+        )
+        for scale, pose in (((1.0, -1.0, 1.0), Pose((0.1, 0.2, 0.3))), ((-1.0, 1.0, 1.0), Pose((0.1, 0.2, 0.3), turn)))
+    )
+    found = diff(before, after)
+    assert [difference.field for difference in relevant(found, before, after, ledger.TOLERANCE)] == told
 
 
 def _told(before: Mechanism, after: Mechanism, alignment: Alignment) -> list[tuple[str, str]]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from hymeko_x.ir.graph import Hypergraph
+from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import Id, Mechanism, shape_edge
-from hymeko_x.ir.parts import Box, Capsule, Cylinder, Mesh, MeshShape, Role, Shape, Sphere
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Joint, Mesh, MeshShape, Role, Shape, Sphere, Tendon
 from hymeko_x.ir.values import Pose
 from hymeko_x.residue.align import align
 from hymeko_x.residue.pairing import other_names
@@ -81,3 +81,17 @@ def test_a_shape_whose_name_another_one_has_gets_a_free_one() -> None:
     image = robot(("b0/visual", visual(Sphere(1.0)), HERE, None), ("b0/visual#2", visual(Box((1.0, 1.0, 1.0))), HERE, None))
     assert other_names(image, source) == ids({"b0/visual#2": "b0/visual", "b0/visual": "b0/visual#3"})
     assert align(image, source)[1].graph.edges.keys() == {Id("shape", "b0/visual"), Id("shape", "b0/visual#3")}
+
+
+def test_shapes_of_a_tendon_are_paired_in_the_order_of_its_path() -> None:
+    """A stage has other ids for them, by which nothing tells which of three alike is which."""
+    robots = []
+    for ids_of_shapes in (("a", "b", "c"), ("g1", "g2", "g3")):
+        bare = chain(Joint(), Joint())
+        shapes = [Id("shape", name) for name in ids_of_shapes]
+        edges = {key: shape_edge(Shape(Sphere(1.0), Role.BOTH), body(f"b{number}"), Pose()) for number, key in enumerate(shapes)}
+        path = tuple(Arc(key, 0, role="wrap") for key in shapes)
+        tendon = {Id("tendon", "cable"): Edge(Tendon(), path)}
+        robots.append(bare.with_graph(Hypergraph(bare.graph.vertices, {**bare.graph.edges, **edges, **tendon})))
+    source, image = robots
+    assert other_names(image, source) == ids({"g1": "a", "g2": "b", "g3": "c"})
