@@ -35,6 +35,8 @@ class Aspect(Enum):
 _FORMS = ("chain", "frame")
 _COMPUTED_VALUES = ("none", "noshape()")
 """What the source leaves to an engine, and the target has in numbers."""
+_SAME_SURFACE = "content.order of triangles"
+"""Of a mesh whose surface is what it was."""
 _COMPUTED = ("mass", "density")
 """Of a shape: from these an engine computes the inertia of its body, which is written out."""
 _DRAWN = ("material", "texture", "layer", "subset", "light")
@@ -64,7 +66,11 @@ def aspect_of(loss: Loss) -> Aspect:
         return Aspect.FORM
     if loss.before is None and not field and _ONLY_SEEN.match(loss.after or ""):
         return Aspect.FORM
-    if field in _FORMS or loss.before in _COMPUTED_VALUES or ((kind, field) == ("shape", "role") and loss.before == "both"):
+    if (
+        field in (*_FORMS, _SAME_SURFACE)
+        or loss.before in _COMPUTED_VALUES
+        or ((kind, field) == ("shape", "role") and loss.before == "both")
+    ):
         return Aspect.FORM
     last = field.rpartition(".")[2]
     if last == "name" or (last == "uri" and kind == "mesh") or (last == "role" and _is_number_or_name(loss)):

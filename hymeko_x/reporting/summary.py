@@ -123,6 +123,9 @@ def groups(losses: Iterable[Loss]) -> list[Group]:
         found.setdefault((verb, kind_of(loss), word_of(loss.field)), []).append(loss)
     _replace_shapes(found)
     _replace_capsules(found)
+    if ("approximated", "actuator", "kind") in found:  # what drives a joint is another element then
+        for verb in ("dropped", "added"):
+            found.pop((verb, "drive", ""), None)
     whole = {(verb, kind) for verb, kind, field in found if not field}
     kept = [Group(*key, tuple(losses)) for key, losses in found.items() if not _goes_with_another(*key, whole)]
     return sorted(kept, key=_rank)

@@ -182,6 +182,12 @@ def test_a_capsule_is_approximated_by_a_cylinder_and_two_spheres() -> None:
     ]
 
 
+def test_the_drive_of_an_actuator_of_another_kind_is_not_listed_beside_it() -> None:
+    kind = loss("actuator 'a'", "kind", "'transmission'", "'motor'")
+    drives = [loss("drive 'a_tran'", "", "drive()", None, "dropped"), loss("drive 'a'", "", None, "drive()")]
+    assert summary_lines([kind, *drives]) == ["approximated: kind of 1 actuator (transmission -> motor): 'a'"]
+
+
 def test_numbers_that_became_fewer_are_shown() -> None:
     found = loss("shape 'foot'", "friction", "[1.5 0.1 0.1]", "[1.5]")
     assert summary_lines([found]) == ["approximated: friction of 1 shape ([1.5 0.1 0.1] -> [1.5]): 'foot'"]
@@ -249,6 +255,7 @@ def loss(element: str, field: str, before: str | None, after: str | None, fate: 
         (loss("mesh 'a'", "scale", "[1 1 1]", "[2 2 2]"), Aspect.PHYSICS),
         (loss("drive 'a'", "[1].role", "'0'", "'a_TX'"), Aspect.NAME),
         (loss("body 'a'", "inertial.mass", "0", "1e-10"), Aspect.FORM),
+        (loss("mesh 'a'", "content.order of triangles", "0", "1"), Aspect.FORM),
         (loss("body 'a'", "inertial.mass", "0", "1e-3"), Aspect.PHYSICS),
         (loss("frame 'a'", "usd content", None, 'def Sphere "a" {}'), Aspect.FORM),
         (loss("drive 'a'", "[1].role", "'0'", "'1'"), Aspect.PHYSICS),
