@@ -316,9 +316,10 @@ class Conversion:
             yield from ((replace(guess.options, actuators=kind), guess.place) for kind in _ACTUATORS)
 
     def _other_targets(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
-        """Where the two differ in anything."""
+        """Where the two differ in anything. Of targets with the same rules one tells as much as all of them."""
         if guess.options.target is None and guess.distance:
-            for target in targets.of_format(self.format):
+            of_rules = {(target.rules, *target.defaults.items()): target for target in reversed(targets.of_format(self.format))}
+            for target in reversed(of_rules.values()):
                 yield replace(guess.options, target=target.name), guess.place
 
     def _report_found(self, options: Options, guess: Guess) -> None:

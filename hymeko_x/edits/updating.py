@@ -22,6 +22,7 @@ from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
 from hymeko_x.edits.unnamed import unnamed_bodies, unnamed_edges, with_same_edges, with_same_numbers
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import Body, Mesh, Shape, Texture
+from hymeko_x.memory import remembering
 from hymeko_x.residue.pairing import other_names
 from hymeko_x.rewrite import Options
 
@@ -95,6 +96,7 @@ class _Round(NamedTuple):
     left: Left
 
 
+@remembering()
 def update(original: Source, format: Format, edited: Source, edited_format: Format, options: Options, report: Report) -> Updated:
     """The edits in ``edited``, which was once converted from ``original``, in the text of that. ``options``: those of the conversion.
 

@@ -118,7 +118,7 @@ def _are_identical(a: tuple[object, ...], b: tuple[object, ...]) -> bool:
                     return False
             elif x == 0.0 and copysign(1.0, x) != copysign(1.0, y):
                 return False
-        elif kind is str:
+        elif kind is str or (kind is int and type(y) is int):
             if x != y:
                 return False
         elif not identical(x, y):

@@ -6,6 +6,7 @@ import io
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
+from hymeko_x.memory import remembered
 from hymeko_x.meshes.png import SIGNATURE, png_fault, without_faulty_chunks
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ class UnreadableImage(Exception):
     """The bytes are no image; the text is the reason."""
 
 
+@remembered
 def png_bytes(data: bytes) -> bytes:
     """The image as a PNG that strict decoders read; one that is such already comes back bit by bit, after it was seen to decode.
 

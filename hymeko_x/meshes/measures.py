@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hymeko_x.memory import remembered
 from hymeko_x.meshes.submesh import Submesh
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ def _principal(part: Submesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     return axes, np.ptp(centred @ axes, axis=0)
 
 
+@remembered
 def thickened(part: Submesh, share: float) -> Submesh:
     """A flat part as a thin solid: a second layer lies below the first one, ``share`` of the largest extent away."""
     axes, lengths = _principal(part)

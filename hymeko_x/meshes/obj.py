@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from hymeko_x.memory import remembered
 from hymeko_x.meshes.numerals import numbers_in
 from hymeko_x.meshes.submesh import MaterialEntry, MaterialGroup, fans, used_rows
 
@@ -203,6 +204,7 @@ def _are_rows(faces: NDArray[Any], table: NDArray[Any]) -> bool:
     return not faces.size or bool(faces.min() >= 0 and faces.max() < len(table))
 
 
+@remembered
 def obj_bytes(part: Submesh) -> bytes:
     """The part as a Wavefront OBJ file: points to float32 precision, texture coordinates, normals, triangles."""
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (part.points + 0.0).tolist()]

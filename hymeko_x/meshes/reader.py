@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from msgspec.structs import replace
 
+from hymeko_x.memory import remembered, remembered_reader
 from hymeko_x.meshes.scene import read_scene
 from hymeko_x.meshes.stl import read_stl
 from hymeko_x.meshes.submesh import MOST_FACES, Appearance, ColouredMesh, MaterialEntry, MaterialGroup, Submesh, Unreadable
@@ -36,6 +37,7 @@ _IN_SEVERAL_FILES = (".gltf", ".glb")
 MOST_BYTES = 2**28
 
 
+@remembered_reader
 def read_parts(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tuple[Submesh, ...]:
     """The submeshes of a mesh file, one per appearance, in the order of the file.
 
@@ -156,6 +158,7 @@ def _of_corners(numbers: tuple[float, ...], rows: tuple[int, ...], width: int, s
     return table.reshape(-1, width), index.reshape(-1, 3)
 
 
+@remembered_reader
 def read_whole(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Submesh:
     """All triangles of a mesh file as one submesh without an appearance, in the order of the file; no image is opened for that.
 
@@ -217,6 +220,7 @@ def _nothing_beside(name: str) -> bytes:
     raise FileNotFoundError(name)
 
 
+@remembered
 def merged(parts: tuple[Submesh, ...]) -> Submesh:
     """All triangles as one submesh without an appearance, with texture coordinates and normals where all have some."""
     return parts[0] if len(parts) == 1 else replace(_in_one(parts), appearance=None)
@@ -250,6 +254,7 @@ def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, mis
     return _coloured([(appearances[group.entry], group) for group in shown])
 
 
+@remembered_reader
 def read_mapped(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Submesh:
     """All triangles of a file without its appearances, with its normals; with texture coordinates where it is an OBJ file that has them.
 

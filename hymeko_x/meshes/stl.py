@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hymeko_x.memory import remembered
 from hymeko_x.meshes.submesh import Unreadable
 
 if TYPE_CHECKING:
@@ -68,6 +69,7 @@ def _text_corners(data: bytes) -> NDArray[np.float64]:
     return values.reshape(-1, 3, 3)
 
 
+@remembered
 def stl_bytes(part: Submesh) -> bytes:
     """The part as a binary STL file; its normals are computed."""
     corners = part.points[part.faces]

@@ -20,6 +20,7 @@ from hymeko_x.formats.mjcf.words import from_mjcf
 from hymeko_x.ir.mechanism import Extra, Id, shape_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Material, Mesh, Role, Texture
+from hymeko_x.memory import remembered
 from hymeko_x.meshes.images import png_bytes
 from hymeko_x.source import file_stem, suffix_of
 
@@ -190,12 +191,18 @@ def _pack_hull(run: Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], fi
     Raises: Unreadable.
     """
     from hymeko_x.meshes.reader import merged
-    from hymeko_x.meshes.submesh import Submesh
 
     if len(parts) > 1:  # then it is not also the mesh to show
-        parts = tuple([Submesh(part.points, part.faces) for part in parts])
+        parts = tuple(map(_without_appearance, parts))
     _store(run, key, key, mesh, merged(parts), file, solid=True)
     return key
+
+
+@remembered
+def _without_appearance(part: Submesh) -> Submesh:
+    from hymeko_x.meshes.submesh import Submesh
+
+    return Submesh(part.points, part.faces)
 
 
 def _store(run: Packing, target: Id, key: Id, mesh: Mesh, part: Submesh, file: _File, *, solid: bool) -> None:
@@ -254,6 +261,7 @@ def _refusal(part: Submesh, suffix: str, data: bytes, *, solid: bool) -> str | N
     return refused(suffix, data)
 
 
+@remembered
 def _objects_in(obj: bytes) -> int:
     """How many objects or groups of an OBJ file have faces."""
     return sum(_FACE.search(group) is not None for group in _GROUP.split(obj))

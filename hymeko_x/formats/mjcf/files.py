@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from hymeko_x.formats.mjcf import MOST_STL_FACES
+from hymeko_x.memory import remembered
 
 
+@remembered
 def refused(suffix: str, data: bytes) -> str | None:
     """Why MuJoCo refuses a file of a type that it reads; None where it does not, or the type is another one.
 
