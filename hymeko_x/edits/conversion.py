@@ -13,10 +13,19 @@ from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import is_idle, relevant
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.classes import edited_classes, with_made_classes
-from hymeko_x.edits.differences import aim, has_other_forms, is_lost_name, is_of_asset, is_of_extra, is_telling, is_value_of_shape
+from hymeko_x.edits.differences import (
+    aim,
+    has_other_forms,
+    is_lost_name,
+    is_of_asset,
+    is_of_extra,
+    is_telling,
+    is_value_of_shape,
+    is_without_inertial,
+)
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import stem, unnamed_bodies, unnamed_edges, with_same_assets, with_same_edges, with_same_numbers
-from hymeko_x.edits.weights import with_computed_gains, with_least_masses, without_followed
+from hymeko_x.edits.weights import heavier, with_computed_gains, with_least_masses, without_followed
 from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, Mechanism
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
@@ -172,9 +181,10 @@ class Conversion:
         """What EDITED has and ORIGINAL, as it was converted last, does not have: by the element of ORIGINAL, in words.
 
         Both files are compared name by name, so that no way to see two robots as the same one hides an edit; only shapes without names,
-        which may have another number, are found by what they are. It counts what EDITED was edited to have, and every other value of a
-        shape that was not edited. Names that did not arrive, and what has several forms of one meaning, are reported by :meth:`left`,
-        whose edits are ``known``. With ``of_extras`` only texts of EDITED's format count, which have one form.
+        which may have another number, are found by what they are. It counts what EDITED was edited to have, every other value of a
+        shape that was not edited, and masses of bodies that have none there. Names that did not arrive, and what has several forms of
+        one meaning, are reported by :meth:`left`, whose edits are ``known``. With ``of_extras`` only masses and texts of EDITED's
+        format count, which have one form.
         """
         assert self._used is not None
         image = self._used.image
@@ -183,17 +193,23 @@ class Conversion:
         touched = {element for element, _, _ in self._asked or ()}
         numbered = reordered_shapes(edited, image)
         rest = diff(image, rename(edited, numbered), _SINGLE)
-        left = frozenset(map(aim, rest))
+        left, heavy = frozenset(map(aim, rest)), self._heavier(image)
         for edit in diff(image, edited, _SINGLE):
             is_there = edit.element.kind == "shape" and (numbered.get(edit.element, edit.element), *aim(edit)[1:]) not in left
-            if of_extras and not is_of_extra(edit):
+            if of_extras and not (is_of_extra(edit) or (is_without_inertial(edit) and edit.element in heavy)):
                 continue
             if aim(edit) in (self._asked or ()) and not (has_other_forms(edit) or is_idle(edit) or is_there):
                 yield self._homes.get(edit.element, edit.element), f"the edit did not arrive: {edit}"
         for edit in () if of_extras else rest:
-            if edit.element not in touched and is_value_of_shape(edit) and str(edit) not in known:
+            counts = is_value_of_shape(edit) or (is_without_inertial(edit) and edit.element in heavy)
+            if edit.element not in touched and counts and str(edit) not in known:
                 words = f"it changed with the edits: {edit.element} {edit.field} is {edit.before}, and {edit.after} in the edited file"
                 yield self._homes.get(edit.element, edit.element), words
+
+    def _heavier(self, image: Mechanism) -> set[Id]:
+        """The bodies without an inertial in EDITED, also where an engine computes some, that have a mass in the image."""
+        names = self._renames(image)
+        return heavier(image, self._under(names, self.edited, image), self._under(names, self._with_inertials(image), image))
 
     def lost_colours(self) -> Iterator[str]:
         """The colours in EDITED of shapes that have another one in ORIGINAL, as of one half of a geom, in words."""
@@ -313,7 +329,8 @@ class Conversion:
         """Where one of the two has actuators that the other one does not have."""
         mine, theirs = ({(key, part.kind) for key, part in robot.vertices(Actuator)} for robot in (guess.image, self.edited))
         if guess.options.actuators is None and mine != theirs:
-            yield from ((replace(guess.options, actuators=kind), guess.place) for kind in _ACTUATORS)
+            kinds = _ACTUATORS if len(mine) > 1 else _ACTUATORS[1:]  # one that is gone was removed
+            yield from ((replace(guess.options, actuators=kind), guess.place) for kind in kinds)
 
     def _other_targets(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
         """Where the two differ in anything. Of targets with the same rules one tells as much as all of them."""

@@ -36,6 +36,11 @@ def is_of_extra(edit: Difference) -> bool:
     return edit.element != ROOT or not (edit.after is None or edit.after.startswith(row.class_elements))
 
 
+def is_without_inertial(edit: Difference) -> bool:
+    """Whether a body has no inertial in EDITED alone."""
+    return edit.element.kind == "body" and edit.field == "inertial" and edit.after == "none"
+
+
 def is_of_asset(edit: Difference) -> bool:
     """Whether an edit is of a mesh, a material or an image, which a file may list without a use."""
     return edit.element.kind in _ASSETS

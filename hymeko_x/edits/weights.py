@@ -65,6 +65,21 @@ def with_least_masses(edited: Mechanism, image: Mechanism) -> Mechanism:
     return edited.replace(vertices=least)
 
 
+def heavier(image: Mechanism, edited: Mechanism, complete: Mechanism) -> set[Id]:
+    """The bodies without an inertial in EDITED that have a mass in the image; ``complete`` is EDITED with those that engines compute."""
+    found: set[Id] = set()
+    for key, body in image.vertices(Body):
+        other, whole = edited.part(key, Body), complete.part(key, Body)
+        if other is not None and other.inertial is None and not math.isclose(_mass(body), _mass(whole), rel_tol=_SINGLE, abs_tol=LEAST):
+            found.add(key)
+    return found
+
+
+def _mass(body: Body | None) -> float:
+    """The mass in kg; 0 where none is stated."""
+    return 0.0 if body is None or body.inertial is None else body.inertial.mass or 0.0
+
+
 def _solid(solids: Solids, body: Id) -> Solid | None:
     """What collides of a body as one solid of density 1, in the body's frame."""
     views = [view for view in solids.mechanism.shapes.get(body, ()) if view.shape.role is not Role.VISUAL]
