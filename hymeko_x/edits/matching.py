@@ -77,7 +77,7 @@ class _Matching:
         """Match what has the same tag and, if it has another name, something in common."""
         self._match(first, second, lambda block: None if block.name else block.tag)
         waiting: dict[str, list[Block]] = defaultdict(list)
-        for other in reversed(second.children):
+        for other in reversed(self._inside(first, second)):
             if other not in self.taken:
                 waiting[other.tag].append(other)
         for block in first.children:
@@ -105,12 +105,21 @@ class _Matching:
             if other is not None and other not in self.taken:
                 self.pair(block, other)
 
+    def _inside(self, first: Block, second: Block) -> list[Block]:
+        """What is in a block; and in those after it that are one with it in the other text: bare ones of its tag, such as <actuator>."""
+        if second.parent is None or not _is_bare(second) or first.parent is None:
+            return second.children
+        mine, theirs = ([block for block in outer.children if block.tag == second.tag] for outer in (first.parent, second.parent))
+        if len(mine) > 1 or len(theirs) == 1 or not all(map(_is_bare, theirs)):
+            return second.children
+        return [child for block in theirs for child in block.children]
+
     def _is_matched(self, block: Block) -> bool:
         return block in self.pairs or block in self.taken
 
     def _match(self, first: Block, second: Block, key: Callable[[Block], Hashable]) -> None:
         waiting: dict[Hashable, list[Block]] = defaultdict(list)
-        for block in reversed(second.children):
+        for block in reversed(self._inside(first, second)):
             if block not in self.taken:
                 waiting[key(block)].append(block)
         waiting.pop(None, None)
@@ -119,6 +128,11 @@ class _Matching:
         for block in first.children:
             if block not in self.pairs and (found := waiting.get(key(block))):
                 self.pair(block, found.pop())
+
+
+def _is_bare(block: Block) -> bool:
+    """Whether a block is a group alone, without a name or a field."""
+    return not (block.name or block.fields)
 
 
 def _unique(blocks: Iterable[Block]) -> dict[tuple[str, str], Block]:

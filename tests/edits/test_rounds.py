@@ -235,3 +235,33 @@ def test_one_of_several_visuals_with_names_is_moved(tmp_path: Path) -> None:
     """Where the first shape is two in the converted file, the numbers of the others there are not those of the original."""
     after, notes = brought_home(tmp_path, "r.sdf", ("<pose>0.02 0 0 0 0 0</pose>", "<pose>0.5 0 0 0 0 0</pose>"), text=PEN)
     assert (after, notes) == (PEN.replace('pos="0.02 0 0"', 'pos="0.5 0 0"'), [])
+
+
+PAIR = """<mujoco model="pair">
+  <worldbody>
+    <body name="a"><joint name="j"/><geom size="0.1"/></body>
+    <body name="b"><joint name="k"/><geom size="0.1"/></body>
+  </worldbody>
+  <!-- left -->
+  <actuator>
+    <motor gear="40"  joint="j"/>
+  </actuator>
+  <!-- right -->
+  <actuator>
+    <motor gear="80"  joint="k"/>
+    <motor gear="20"  joint="j"/>
+  </actuator>
+</mujoco>
+"""
+
+
+@pytest.mark.parametrize(
+    ("change", "wanted"),
+    [
+        (("[80]", "[90]"), ('"80"', '"90"')),
+        (("  k_motor : motor { [80] - k unnamed }\n", ""), ('    <motor gear="80"  joint="k"/>\n', "")),
+    ],
+)
+def test_an_element_without_a_name_is_edited_in_its_own_group(change: tuple[str, str], wanted: tuple[str, str], tmp_path: Path) -> None:
+    """A group that stands several times in the text, as <actuator> may, stands once in a print."""
+    assert brought_home(tmp_path, "there.hymeko", change, text=PAIR) == (PAIR.replace(*wanted), [])
