@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from hymeko_x.outline import Block, Field
 
 _AFTER_FIELD = (b" ", b"\t", b"\r", b"\n", b"/", b">")
+_NAME_WITH_EXPRESSION = re.compile(rb"([^\s$]*)(\$\{[^{}]*\}|\$\([^()]*\))([^\s$]*)")
 _WORD = re.compile(rb"[^\s,()\[\]]+")
 
 
@@ -40,11 +41,27 @@ def _change(splices: Splices, mine: Field, earlier: Field | None, field: Field, 
     words = [found.span() for found in _WORD.finditer(splices.data, mine.value_start, mine.value_end)]
     wanted, had = _WORD.findall(new), [] if earlier is None else _WORD.findall(earlier.text.encode())
     if not len(words) == len(wanted) == len(had) > 1:
+        written = splices.data[mine.value_start : mine.value_end]
+        new = new if earlier is None else _with_expression(written, earlier.text.encode(), new)
         splices.put(mine.value_start, mine.value_end, new)
         return
     for (start, end), word, old in zip(words, wanted, had, strict=True):
         if value_of(word.decode()) != value_of(old.decode()):
             splices.put(start, end, word)
+
+
+def _with_expression(written: bytes, had: bytes, wanted: bytes) -> bytes:
+    """A name that becomes another one, with the expression that the author has for a part of it where that part stays."""
+    found = _NAME_WITH_EXPRESSION.fullmatch(written)
+    if found is None:
+        return wanted
+    before, expression, after = found.groups()
+    value = had[len(before) : len(had) - len(after)]
+    if not (before or after) or not value or before + value + after != had:
+        return wanted
+    if wanted.startswith(before + value):
+        return before + expression + wanted[len(before + value) :]
+    return wanted[: -len(value + after)] + expression + after if wanted.endswith(value + after) else wanted
 
 
 def _add(splices: Splices, own: Block, after: Block, name: str, print: bytes) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from operator import attrgetter
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.xml.tree import read_numbers
@@ -17,14 +19,24 @@ Pairs = dict["Block", "Block"]
 """The block of the other outline, for each block that it has."""
 
 
-def match(first: Block, second: Block) -> Pairs:
+Named = Mapping[tuple[str, str], "Block"]
+"""Blocks by their tags, and names that they may have in another way."""
+NO_NAMES: Named = MappingProxyType({})
+
+
+def match(first: Block, second: Block, written: Named = NO_NAMES) -> Pairs:
     """The blocks of ``second`` by those of ``first`` that they are. Linear but for sorting.
+
+    ``written`` are blocks of ``second`` by what the outermost ones of ``first`` are called; these are matched at first.
 
     Blocks in matched blocks are matched by their names; then those that stand elsewhere now, whose name is unique; then what has the
     same content, with another name; and what is left in its order.
     """
     matching = _Matching(first, second)
     matching.pair(first, second)
+    for block in first.children:
+        if (block.tag, block.name) in written:
+            matching.pair(block, written[block.tag, block.name])
     matching.descend()
     matching.match_moved(first, second)
     matching.match_rest()

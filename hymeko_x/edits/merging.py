@@ -10,22 +10,23 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.edits.fields import edit_fields
-from hymeko_x.edits.matching import match
+from hymeko_x.edits.matching import NO_NAMES, match
 from hymeko_x.edits.splicing import Splices, reindented, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Set
 
-    from hymeko_x.edits.matching import Pairs
+    from hymeko_x.edits.matching import Named, Pairs
     from hymeko_x.outline import Block, Outline
 
 
-def merged(own: Outline, before: Outline, after: Outline, replaced: Set[int] = frozenset()) -> dict[str, bytes]:
+def merged(own: Outline, before: Outline, after: Outline, replaced: Set[int] = frozenset(), written: Named = NO_NAMES) -> dict[str, bytes]:
     """The files of ``own`` that change, by the names that the outline has for them.
 
-    ``replaced`` are places in ``after`` of blocks that are put in as they are printed, whatever the author wrote there.
+    ``replaced`` are places in ``after`` of blocks that are put in as they are printed, whatever the author wrote there; ``written`` are
+    blocks of ``own`` by their tags and the names that the prints have for them.
     """
-    merge = _Merge(own, before, after, replaced)
+    merge = _Merge(own, before, after, replaced, written)
     merge.remove()
     merge.edit()
     merge.write()
@@ -39,14 +40,14 @@ class _Merge:
     of ``after``, unless that is put in as it is printed; ``texts``: what is put somewhere, as it would stand at the margin.
     """
 
-    def __init__(self, own: Outline, before: Outline, after: Outline, replaced: Set[int]) -> None:
+    def __init__(self, own: Outline, before: Outline, after: Outline, replaced: Set[int], written: Named) -> None:
         self.own, self.before, self.after = own, before, after
         self.splices = {name: Splices(file.data, own.style) for name, file in own.files.items()}
         self.print = Splices(after.files[after.main].data, after.style)
         self.print_unit = unit_of(self.print.data, after.root.walk())
         self.unit = unit_of(own.files[own.main].data, own.root.walk())
         self.since: Pairs = match(after.root, before.root)
-        self.mine: Pairs = match(before.root, own.root)
+        self.mine: Pairs = match(before.root, own.root, written)
         self.replaced = {block for block in after.root.walk() if block.start in replaced or self._is_changed_name(block)}
         self.kept = {
             block: place for block in after.root.walk() if (place := self._place(block)) is not None and block not in self.replaced

@@ -14,6 +14,7 @@ from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Origin, Refusal, Report, listed
+from hymeko_x.edits.expanded import written_blocks
 from hymeko_x.edits.merging import merged
 from hymeko_x.edits.overrides import with_overrides
 from hymeko_x.edits.splicing import Lines
@@ -156,6 +157,7 @@ class _Attempt:
         pipeline.read_file(source, format, own)
         self.errors = len(own.errors(0))
         self.own: Outline = formats.loaded(format.outline or "")(source, Report())
+        self.written = written_blocks(self.own, before) if format.expands_to else {}
         package = printed(after, format, report)
         self.whole, self.beside = package.main, package.files
         sources = [Source(source.name, printed(robot, printing, Report(), flat=True).main, source.files) for robot in (before, after)]
@@ -170,7 +172,7 @@ class _Attempt:
     def files(self, replaced: Mapping[Block, Id]) -> dict[str, bytes]:
         """The files that change."""
         places = {block.start for block in replaced}
-        return {self.own.files[name].path: data for name, data in merged(self.own, self.before, self.after, places).items()}
+        return {self.own.files[name].path: data for name, data in merged(self.own, self.before, self.after, places, self.written).items()}
 
     def wrong(self, files: Mapping[str, bytes]) -> frozenset[Id] | None:
         """The elements that are not what they should be; None when all are, and ``_UNREADABLE`` where the text cannot be read.
