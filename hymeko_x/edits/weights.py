@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.parts import Actuator, Body, Role
+from hymeko_x.ir.parts import Actuator, Body, Inertial, Role
 from hymeko_x.ir.solids import joined
 from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.densities import Solids
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism
-    from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.solids import Solid
 
+_LEAST_TENSOR = (LEAST, LEAST, LEAST, 0.0, 0.0, 0.0)
 _SINGLE = 1e-5
 """Of the largest number: how far inertials of sizes in single precision may be apart."""
 
@@ -56,13 +56,28 @@ def with_computed_gains(edited: Mechanism, first: Mechanism, now: Mechanism, own
 
 
 def with_least_masses(edited: Mechanism, image: Mechanism) -> Mechanism:
-    """The edited robot, in which bodies without an inertial have the least one where that is what ORIGINAL's format demands instead."""
+    """The edited robot, in which a body that has the least inertial in one of both robots alone has that of the image.
+
+    A format demands it of bodies that have none, and demands none any more where an edit adds a body with a mass behind one.
+    """
     least: dict[Id, Body] = {}
     for key, body in image.vertices(Body):
         other = edited.part(key, Body)
-        if other is not None and other.inertial is None and body.inertial is not None and body.inertial.mass == LEAST:
+        is_asked = other is not None and other.inertial is None and body.inertial is not None and body.inertial.mass == LEAST
+        if is_asked or (other is not None and other != body and _is_least(other.inertial, body.inertial)):
             least[key] = body
     return edited.replace(vertices=least)
+
+
+def _is_least(inertial: Inertial | None, other: Inertial | None) -> bool:
+    """Whether a mass or a tensor is the least one in place of a lesser one, and what else there is the same."""
+    if inertial is None:
+        return False
+    other = Inertial(0.0) if other is None else other
+    is_mass = inertial.mass == LEAST and (other.mass or 0.0) < LEAST
+    is_tensor = inertial.tensor == _LEAST_TENSOR and all(abs(value) < LEAST for value in other.tensor or ())
+    is_same_mass, is_same_tensor = (inertial.mass, inertial.com) == (other.mass, other.com), inertial.tensor == other.tensor
+    return (is_mass or is_same_mass) and (is_tensor or is_same_tensor) and not (is_same_mass and is_same_tensor)
 
 
 def heavier(image: Mechanism, edited: Mechanism, complete: Mechanism) -> set[Id]:

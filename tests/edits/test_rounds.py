@@ -265,3 +265,28 @@ PAIR = """<mujoco model="pair">
 def test_an_element_without_a_name_is_edited_in_its_own_group(change: tuple[str, str], wanted: tuple[str, str], tmp_path: Path) -> None:
     """A group that stands several times in the text, as <actuator> may, stands once in a print."""
     assert brought_home(tmp_path, "there.hymeko", change, text=PAIR) == (PAIR.replace(*wanted), [])
+
+
+CARRIER = """<robot name="carrier">
+  <link name="base"/>
+  <joint name="slide" type="prismatic">
+    <parent link="base"/>
+    <child link="carrier"/>
+    <axis xyz="1 0 0"/>
+    <limit lower="0" upper="1" effort="1" velocity="1"/>
+  </joint>
+  <link name="carrier">
+    <inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>
+  </link>
+</robot>
+"""
+
+
+@pytest.mark.unread("HX103")
+def test_a_least_mass_that_a_new_body_makes_needless_is_no_edit(tmp_path: Path) -> None:
+    tool = '<body name="tool" pos="0 0 1"><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body>'
+    least = '<inertial pos="0 0 0" mass="1e-10" diaginertia="1e-10 1e-10 1e-10"/>'
+    text, notes = brought_home(tmp_path, "there.mjcf", (least, f"{least}{tool}"), text=CARRIER)
+    assert '<mass value="0"/>' in text
+    assert '<link name="tool">' in text
+    assert notes == []
