@@ -263,8 +263,10 @@ def test_elements_of_other_formats_get_other_names_wherever_they_stand(tmp_path:
             await renamed("claw.urdf", URDF_HAND, 'link name="palm"', 0, "finger")
         with pytest.raises(JsonRpcException, match="there is no name of an element here"):
             await renamed("claw.urdf", URDF_HAND, 'mass value="0.5"', 0, "finger")
+        assert await renamed("r.xacro", XACRO, 'parent link="left_foot"', 0, "left_hoof") == XACRO.replace("_foot", "_hoof")
+        twice = XACRO.replace("</robot>", '  <xacro:leg side="right"/>\n</robot>')
         with pytest.raises(JsonRpcException, match="'left_foot' stands in the text in more places"):
-            await renamed("r.xacro", XACRO, 'parent link="left_foot"', 0, "left_hoof")
+            await renamed("r.xacro", twice, 'parent link="left_foot"', 0, "left_hoof")
 
     edit(tmp_path, work)
 
