@@ -80,3 +80,9 @@ def test_a_world_without_links_comes_back_from_what_is_kept(name: str, keep: str
     hx.convert(tmp_path / "w.sdf", tmp_path / name, keep=keep)
     hx.convert(tmp_path / name, tmp_path / "back.sdf")
     assert [line for line in canonical((tmp_path / "back.sdf").read_bytes()) if "made by" not in line] == canonical(text.encode())
+
+
+def test_a_frame_of_a_model_without_links_stays_on_the_link_of_the_model_in_it() -> None:
+    inner = '<model name="nested" canonical_link="b"><link name="a"/><link name="b"/></model>'
+    text = f'<sdf version="1.9"><model name="top"><frame name="f"/>{inner}</model></sdf>'
+    assert canonical(hx.dumps(hx.loads(text, "sdf"), "sdf").encode()) == canonical(text.encode())

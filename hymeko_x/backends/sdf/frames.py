@@ -100,11 +100,14 @@ class Places:
 
     @cached_property
     def _canonical_link(self) -> Id:
-        """The link that the frame of the model without a scope is on."""
+        """The link that the frame of the model without a scope is on; one without links has that of the first model in it."""
         named = [extra.text for extra in self._mechanism.extras.get(ROOT, ()) if extra.path.endswith("model/@canonical_link")]
-        bodies = [*self._mechanism.layout, *self._mechanism.graph.vertices]
-        links = (key for key in bodies if key.kind == "body" and words.SCOPE not in key.name)
-        return Id("body", named[0]) if named else next(links, WORLD)
+        if named:
+            return Id("body", named[0])
+        members = [*self._mechanism.layout, *self._mechanism.graph.vertices]
+        links = (key for key in members if key.kind == "body" and words.SCOPE not in key.name)
+        nested = (self.mounts[key][0] for key in members if key.name.endswith(f"{words.SCOPE}{words.MODEL_FRAME}") and key in self.mounts)
+        return next(links, next(nested, WORLD))
 
     def _body_below(self, frame: Id) -> Id | None:
         return self.mounts[frame][0] if frame in self.mounts else None
