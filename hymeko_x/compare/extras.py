@@ -7,13 +7,22 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from hymeko_x import formats
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable, Sequence
 
+    from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Extra
 
     Identity = Callable[[Extra], Hashable]
     Known = Iterable[tuple[Hashable, Extra]]
+
+
+def format_of(field: str) -> Format | None:
+    """The format of the extra in a difference, whose field begins with its name (``usd content``); None where it is no extra of one."""
+    name, blank, _ = field.partition(" ")
+    return next((row for row in formats.FORMATS if row.name == name), None) if blank else None
 
 
 def essence_of(extra: Extra) -> Extra:

@@ -8,6 +8,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
+from hymeko_x.compare.extras import format_of
 from hymeko_x.ir.kinematics import displacement
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, numbers_weight, pose_weight
 from hymeko_x.ir.notations import UNNAMED
@@ -115,10 +116,9 @@ class _Relevance:
 
 def is_idle(difference: Difference) -> bool:
     """Whether it is an extra that holds nothing of a robot: an empty group, or the extent of a geometry."""
-    family, gap, _ = difference.field.partition(" ")
-    pattern = next((row.idle_extras for row in formats.FORMATS if row.name == family), "") if gap else ""
+    row = format_of(difference.field)
     texts = [text for text in (difference.before, difference.after) if text is not None]
-    return bool(pattern and texts) and all(re.fullmatch(pattern, text) for text in texts)
+    return row is not None and bool(row.idle_extras and texts) and all(re.fullmatch(row.idle_extras, text) for text in texts)
 
 
 def _is_of_robot(difference: Difference) -> bool:

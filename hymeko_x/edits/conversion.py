@@ -42,6 +42,7 @@ from hymeko_x.source import PackageFiles
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Set
 
+    from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import JointView
     from hymeko_x.rewrite import Options
@@ -194,15 +195,18 @@ class Conversion:
         numbered = reordered_shapes(edited, image)
         rest = diff(image, rename(edited, numbered), _SINGLE)
         left, heavy = frozenset(map(aim, rest)), self._heavier(image)
+
+        def is_of_mass(edit: Difference) -> bool:
+            return is_without_inertial(edit) and edit.element in heavy
+
         for edit in diff(image, edited, _SINGLE):
             is_there = edit.element.kind == "shape" and (numbered.get(edit.element, edit.element), *aim(edit)[1:]) not in left
-            if of_extras and not (is_of_extra(edit) or (is_without_inertial(edit) and edit.element in heavy)):
+            if of_extras and not (is_of_extra(edit) or is_of_mass(edit)):
                 continue
             if aim(edit) in (self._asked or ()) and not (has_other_forms(edit) or is_idle(edit) or is_there):
                 yield self._homes.get(edit.element, edit.element), f"the edit did not arrive: {edit}"
         for edit in () if of_extras else rest:
-            counts = is_value_of_shape(edit) or (is_without_inertial(edit) and edit.element in heavy)
-            if edit.element not in touched and counts and str(edit) not in known:
+            if edit.element not in touched and (is_value_of_shape(edit) or is_of_mass(edit)) and str(edit) not in known:
                 words = f"it changed with the edits: {edit.element} {edit.field} is {edit.before}, and {edit.after} in the edited file"
                 yield self._homes.get(edit.element, edit.element), words
 

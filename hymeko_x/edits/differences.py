@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
+from hymeko_x.compare.extras import format_of
 from hymeko_x.ir.mechanism import ROOT
 
 if TYPE_CHECKING:
@@ -29,9 +30,8 @@ def is_of_extra(edit: Difference) -> bool:
 
     Elements bring the texts of classes and of unused assets along; a text of the whole that is gone may have gone with one of them.
     """
-    family, gap, _ = edit.field.partition(" ")
-    row = next((row for row in formats.FORMATS if row.name == family), None)
-    if not gap or row is None or is_of_asset(edit):
+    row = format_of(edit.field)
+    if row is None or is_of_asset(edit):
         return False
     return edit.element != ROOT or not (edit.after is None or edit.after.startswith(row.class_elements))
 
@@ -60,7 +60,7 @@ def is_telling(edit: Difference) -> bool:
     """Whether a difference that is left is an edit, and not a value that one of two equal robots leaves to be computed."""
     if None in (edit.before, edit.after):
         return edit.element.kind in _WHOLE and not edit.field
-    if edit.element.kind == "shape" and edit.field in ("mass", "density"):
+    if is_weight(edit):
         return False
     return edit.element.kind in _GIVEN or not {"none", "[]"} & {edit.before, edit.after}
 

@@ -10,7 +10,7 @@ from hymeko_x.ir.parts import Actuator, Body, Inertial, Role
 from hymeko_x.ir.solids import joined
 from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.densities import Solids
-from hymeko_x.rewrite.inertia import LEAST
+from hymeko_x.rewrite.inertia import LEAST, LEAST_TENSOR
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.solids import Solid
 
-_LEAST_TENSOR = (LEAST, LEAST, LEAST, 0.0, 0.0, 0.0)
 _SINGLE = 1e-5
 """Of the largest number: how far inertials of sizes in single precision may be apart."""
 
@@ -75,7 +74,7 @@ def _is_least(inertial: Inertial | None, other: Inertial | None) -> bool:
         return False
     other = Inertial(0.0) if other is None else other
     is_mass = inertial.mass == LEAST and (other.mass or 0.0) < LEAST
-    is_tensor = inertial.tensor == _LEAST_TENSOR and all(abs(value) < LEAST for value in other.tensor or ())
+    is_tensor = inertial.tensor == LEAST_TENSOR and all(abs(value) < LEAST for value in other.tensor or ())
     is_same_mass, is_same_tensor = (inertial.mass, inertial.com) == (other.mass, other.com), inertial.tensor == other.tensor
     return (is_mass or is_same_mass) and (is_tensor or is_same_tensor) and not (is_same_mass and is_same_tensor)
 

@@ -7,6 +7,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import diagnostics, formats
+from hymeko_x.compare.extras import format_of
 from hymeko_x.ir.values import number_text
 from hymeko_x.reporting.aspects import Aspect, aspect_of, kind_of
 from hymeko_x.reporting.values import error_of, size_of
@@ -271,19 +272,17 @@ def _settings(losses: Sequence[Loss]) -> Iterator[str]:
     for loss in losses:
         by_format.setdefault(loss.field.partition(" ")[0], []).append(loss)
     for format, found in by_format.items():
-        named = list(dict.fromkeys(chain.from_iterable(_names_of_setting(loss, format) for loss in found)))
+        named = list(dict.fromkeys(chain.from_iterable(map(_names_of_setting, found))))
         shown = ", ".join([*named[: 2 * _EXAMPLES], *(["..."] if len(named) > 2 * _EXAMPLES else [])])
-        verb = "dropped" if any(loss.before is not None for loss in found) else "added"
-        yield f"{verb}: {counted(len(found), 'setting')} that only {format} has: {shown}"
+        yield f"dropped: {counted(len(found), 'setting')} that only {format} has: {shown}"
 
 
-def _names_of_setting(loss: Loss, format: str) -> list[str]:
+def _names_of_setting(loss: Loss) -> list[str]:
     """The name of an attribute, the tag of an element, or what the format calls it."""
     _, is_attribute, name = loss.field.rpartition("@")
-    text = loss.before or loss.after or ""
     if is_attribute:
         return [name]
-    function = next((row.settings for row in formats.FORMATS if row.name == format), None)
-    named: list[str] = formats.loaded(function)(text) if function else []
+    text, row = loss.before or "", format_of(loss.field)
+    named: list[str] = formats.loaded(row.settings)(text) if row is not None and row.settings else []
     tag = _TAG.match(text)
     return named or [f"<{tag[1]}>" if tag else loss.field.partition(" ")[2]]

@@ -7,7 +7,7 @@ import re
 from ast import literal_eval
 from typing import TYPE_CHECKING
 
-from hymeko_x import formats
+from hymeko_x.compare.extras import format_of
 from hymeko_x.ir.values import rotation_angle
 
 if TYPE_CHECKING:
@@ -65,5 +65,4 @@ def size_of(loss: Loss) -> float | None:
 
 def is_extra(loss: Loss) -> bool:
     """Whether it is an extra, whose field begins with the name of its format."""
-    format, blank, _ = loss.field.partition(" ")
-    return bool(blank) and (format == "comment" or any(format == row.name for row in formats.FORMATS))
+    return loss.field.startswith("comment ") or format_of(loss.field) is not None

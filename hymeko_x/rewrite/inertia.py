@@ -33,6 +33,8 @@ LEAST = 1e-10
 
 Far above the engine's own bound (1e-15), where its mass matrix becomes singular, far below what any comparison sees.
 """
+LEAST_TENSOR = (LEAST, LEAST, LEAST, 0.0, 0.0, 0.0)
+"""The tensor in kg m^2 of such a body."""
 _BOUND = 1e-15
 """MuJoCo's mjMINVAL: a moving body below it is refused."""
 _LEAST_TURNED = 2e-14
@@ -236,7 +238,7 @@ def _is_sound(body: Body) -> bool:
 def _least_inertial(inertial: Inertial | None) -> Inertial:
     """The inertial with as much added as it takes: a mass, and the same moment about every axis."""
     if inertial is None:
-        return Inertial(LEAST, tensor=(LEAST, LEAST, LEAST, 0.0, 0.0, 0.0))
+        return Inertial(LEAST, tensor=LEAST_TENSOR)
     xx, yy, zz, xy, xz, yz = inertial.tensor or _NOTHING
     lacking = max(0.0, LEAST - principal_moments((xx, yy, zz, xy, xz, yz))[0])
     mass = inertial.mass if inertial.mass is not None and inertial.mass >= _BOUND else LEAST

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats import sdf as words
@@ -107,7 +108,7 @@ class Places:
         members = [*self._mechanism.layout, *self._mechanism.graph.vertices]
         links = (key for key in members if key.kind == "body" and words.SCOPE not in key.name)
         nested = (self.mounts[key][0] for key in members if key.name.endswith(f"{words.SCOPE}{words.MODEL_FRAME}") and key in self.mounts)
-        return next(links, next(nested, WORLD))
+        return next(chain(links, nested), WORLD)
 
     def _body_below(self, frame: Id) -> Id | None:
         return self.mounts[frame][0] if frame in self.mounts else None
