@@ -52,6 +52,8 @@ def _fragment(attributes: dict[str, str], children: Sequence[Tag | str]) -> str:
 def _of_link(body: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
     back = {name: word for word, name in words.OF_LINK.items()}
     for node in _content(body, sheet):
+        if node.tag == "inertial":  # URDF has the numbers
+            continue
         yield _leaf(back[node.tag], _text(node)) if node.tag in back else markup(node)
     shapes = sheet.mechanism.shapes.get(body, ())
     collisions = [_whole(view.id, sheet) for view in shapes if view.shape.role is Role.COLLISION]

@@ -1,4 +1,4 @@
-"""What other formats need to know of a robot from SDF: nothing in static models moves, and closures join the links themselves."""
+"""What other formats need to know of a robot from SDF: what static models hold, what closures join, and inertials as numbers."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.values import TRUTH, BadText
 from hymeko_x.frontends.sdf.anchors import without_anchors
+from hymeko_x.frontends.sdf.inertials import with_computed_inertials
 from hymeko_x.ir.mechanism import ROOT, Id
 from hymeko_x.ir.parts import Frame, Joint
 
@@ -22,9 +23,12 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files
 
 
-def complete(mechanism: Mechanism, _printed: Callable[[], tuple[Mechanism, bytes]], _files: Files, report: Report) -> Mechanism:
-    """The mechanism in which joints of static models are fixed, as simulators of SDF hold them, and closures have no links of their own."""
-    mechanism = without_anchors(mechanism)
+def complete(mechanism: Mechanism, _printed: Callable[[], tuple[Mechanism, bytes]], files: Files, report: Report) -> Mechanism:
+    """The mechanism in which joints of static models are fixed, as simulators of SDF hold them, and closures have no links of their own.
+
+    Inertials that come from meshes are computed.
+    """
+    mechanism = with_computed_inertials(without_anchors(mechanism), files, report)
     static = _static_scopes(mechanism)
     edges: dict[Id, RobotEdge] = {}
     for key, view in mechanism.joints.items() if static else ():
