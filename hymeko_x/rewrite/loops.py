@@ -65,13 +65,25 @@ def close_by_points(mechanism: Mechanism, context: Context) -> Mechanism:
         view = JointView(key, Joint(loop.dofs), first.target, second.target, pose_weight(first), pose_weight(second))
         closures = _closures(view, loop)
         if not closures:
-            kinds = " and a ".join(dof.kind.value for dof in loop.dofs)
-            message = f"{key} closes a loop by a {kinds}, for which there is no closure; it is left out"
-            context.report.warn(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
+            _report_left_out(key, loop, mechanism, context)
         for number, closure in enumerate(closures):
             edges[key if number == 0 else names.take("loop", key.name)] = closure
     gone = [key for key, _, _ in joints if key not in edges]
     return mechanism.replace(edges=edges, without=gone)
+
+
+def leave_screws_open(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Closures by a screw are left out."""
+    gone = [(key, loop) for key, loop, _ in mechanism.edges(Loop) if any(dof.kind is DofKind.SCREW for dof in loop.dofs)]
+    for key, loop in gone:
+        _report_left_out(key, loop, mechanism, context)
+    return mechanism.replace(without=[key for key, _ in gone])
+
+
+def _report_left_out(key: Id, loop: Loop, mechanism: Mechanism, context: Context) -> None:
+    kinds = " and a ".join(dof.kind.value for dof in loop.dofs)
+    message = f"{key} closes a loop by a {kinds}, for which there is no closure; it is left out"
+    context.report.warn(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
 
 
 def anchor_closures(mechanism: Mechanism, _context: Context) -> Mechanism:

@@ -28,5 +28,6 @@ class Feature(Enum):
     LOOPS = "loops"
     HELD_BASES = "free bases that a closure holds"
     SLIDING_LOOPS = "closures that leave a slide free"
+    SCREW_LOOPS = "closures by a screw"
     OPEN_LOOPS = "closures that are open in the zero pose"
     CURVES = "couplings that are no straight line of one leader"

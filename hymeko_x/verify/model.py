@@ -263,12 +263,13 @@ class Tendon(Struct, frozen=True):
 class Record(Struct, frozen=True):
     """Words and numbers that are compared one by one: an actuator with its target, a sensor, or a coupling of tendons.
 
-    A reader that only knows that there is one leaves both empty.
+    A reader that only knows that there is one leaves both empty. ``kind`` is that of a sensor in the reader's words.
     """
 
     name: str | None
     words: tuple[str, ...]
     numbers: tuple[float, ...]
+    kind: str = ""
 
 
 class KinematicModel(Struct, frozen=True, eq=False, dict=True):
@@ -277,6 +278,7 @@ class KinematicModel(Struct, frozen=True, eq=False, dict=True):
     ``precision`` is the relative accuracy of its numbers (double or float32); ``is_independent`` is False when the reader is
     this project's own; ``notes`` are findings of the reader that the verdict repeats. ``features`` are those that format and
     reader represent, except those in ``unrepresented`` for dofs of one kind; ``unread`` are those that only the reader lacks.
+    ``sensor_kinds`` are those that the format has, None for all.
     """
 
     name: str
@@ -292,6 +294,7 @@ class KinematicModel(Struct, frozen=True, eq=False, dict=True):
     features: frozenset[Feature] = frozenset(Feature)
     unrepresented: frozenset[tuple[Feature, Kind]] = frozenset()
     unread: frozenset[Feature] = frozenset()
+    sensor_kinds: frozenset[str] | None = None
     precision: float = 1e-15
     is_independent: bool = True
     notes: tuple[str, ...] = ()

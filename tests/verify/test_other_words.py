@@ -94,3 +94,56 @@ def test_a_mass_without_tensor_stays_at_the_origin_of_its_link(tmp_path: Path, t
     source.write_text(f'<robot name="z"><link name="a"><inertial><mass value="2"/></inertial>{shape}</link></robot>')
     hx.convert(source, target)
     assert hx.verify(source, target).verdict.startswith("same")
+
+
+LOOPED = """r : robot {
+  a { mass 1 inertia [1 1 1] } b { mass 1 inertia [1 1 1] }
+  @j { + a - b axis=X }
+  @k : loop.joint { [0 0 1] ~ a [0 0 1] ~ b dof : hinge { axis=X } }
+  @l : loop.joint { [0 0 2] ~ a [0 0 2] ~ b dof : hinge { axis=X } }
+}"""
+SCREWED = "@s : loop.joint { ~ a ~ b dof : screw { axis=X pitch 0.1 } }\n}"
+
+
+@pytest.mark.unread("HX101", "HX104")
+@pytest.mark.parametrize("text", [LOOPED, LOOPED[:-1] + SCREWED], ids=["hinges", "and a screw"])
+def test_hinges_that_close_loops_between_two_bodies_are_two_points_each(text: str, written: Write, tmp_path: Path) -> None:
+    target = tmp_path / "robot.xml"
+    hx.convert(written("hymeko", text), target)
+    verdict = hx.verify(written("hymeko", text), target)
+    assert verdict.is_same, verdict.failed
+    moved = target.with_name("moved.xml")
+    moved.write_text(target.read_text().replace('pos="0.1 0 2"', 'pos="0.1 0.1 2"', 1))
+    assert moved.read_text() != target.read_text()
+    assert {check.quantity for check in hx.verify(written("hymeko", text), moved).failed} == {"loop closure, rotation"}
+
+
+SENSED = """r : robot {
+  a { mass 1 inertia [1 1 1] } @j : fixed { + world - a }
+  ray : sensor.gpu_lidar {} pose : sensor.imu {} @on : mount { + a - ray } @with : mount { + a - pose }
+}"""
+
+
+def test_sensors_that_mjcf_does_not_have_are_a_gap_and_an_imu_is_two(written: Write, tmp_path: Path) -> None:
+    target = tmp_path / "robot.xml"
+    hx.convert(written("hymeko", SENSED), target)
+    for pair in ((written("hymeko", SENSED), target), (target, written("hymeko", SENSED))):
+        verdict = hx.verify(*pair)
+        assert verdict.is_same, verdict.failed
+        assert [(gap.quantity, gap.names) for gap in verdict.gaps] == [("sensors", ("'ray'",))]
+    less = target.with_name("less.xml")
+    less.write_text(target.read_text().replace('<gyro name="pose_gyro" site="pose"/>', ""))
+    assert less.read_text() != target.read_text()
+    assert [check.quantity for check in hx.verify(written("hymeko", SENSED), less).failed] == ["sensors"]
+
+
+SCREW = f"{LOOPED[:-1]}{SCREWED}"
+
+
+@pytest.mark.unread("HX104")
+def test_a_stage_has_no_screw_that_closes_a_loop(written: Write, tmp_path: Path) -> None:
+    report = hx.convert(written("hymeko", SCREW), tmp_path / "robot.usda").report
+    assert "loop 's' closes a loop by a screw, for which there is no closure; it is left out" in [item.message for item in report]
+    verdict = hx.verify(written("hymeko", SCREW), tmp_path / "robot.usda")
+    assert verdict.is_same, verdict.failed
+    assert [(gap.quantity, gap.count) for gap in verdict.gaps] == [("closures by a screw", 1)]

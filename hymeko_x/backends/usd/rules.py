@@ -14,7 +14,7 @@ from hymeko_x.ir.parts import Contact, Loop
 from hymeko_x.rewrite.differentials import drive_by_differentials
 from hymeko_x.rewrite.fragments import mount_sensors_of_fragments
 from hymeko_x.rewrite.joints import expand_screws
-from hymeko_x.rewrite.loops import close_in_pairs
+from hymeko_x.rewrite.loops import close_in_pairs, leave_screws_open
 from hymeko_x.rewrite.names import make_names_usable
 from hymeko_x.rewrite.roots import put_world_link_into_world
 from hymeko_x.rewrite.shapes import drop_unused_assets
@@ -63,6 +63,7 @@ RULES: tuple[Rule, ...] = (
     put_world_link_into_world,
     expand_screws,
     close_in_pairs,
+    leave_screws_open,
     drop_loops_without_bodies,
     drive_by_transmissions,
     drive_by_differentials,

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from hymeko_x.verify.model import KinematicModel, Record
     from hymeko_x.verify.verdict import Check
 
+_OF_IMU = ("accelerometer", "gyro")
+"""MuJoCo's kinds of sensors that an IMU consists of."""
 _TINY = 1e-12
 """In SI units: numbers below it are zero."""
 
@@ -34,7 +36,9 @@ def _check(pair: Pair, feature: Feature, records: Callable[[KinematicModel], Seq
     if not pair.both_represent(feature):
         pair.add_unrepresented(feature, lambda model: [_label(record) for record in records(model)])
     elif records(pair.a) or records(pair.b):
-        pairs, findings = _pair_records(records(pair.a), records(pair.b))
+        firsts, seconds = _of_kinds_of(pair.b, records(pair.a), records(pair.b), pair)
+        seconds, firsts = _of_kinds_of(pair.a, seconds, firsts, pair)
+        pairs, findings = _pair_records(firsts, seconds)
         found = Differences(f"{feature.value}, numbers", "SI")
         for x, y in pairs:
             if x.words and y.words and x.words != y.words:
@@ -45,6 +49,20 @@ def _check(pair: Pair, feature: Feature, records: Callable[[KinematicModel], Seq
                 found.add(abs(ours - theirs), pair.relative(_TINY, *x.numbers), _label(x), ours, theirs)
         yield counted(feature.value, findings)
         yield from found.checks()
+
+
+def _of_kinds_of(model: KinematicModel, others: Sequence[Record], own: Sequence[Record], pair: Pair) -> tuple[list[Record], list[Record]]:
+    """The other robot's records of kinds that the model's format has, and the model's own; a gap names the rest.
+
+    An IMU is represented by what measures its acceleration and its angular velocity, where the format has none.
+    """
+    foreign = [record for record in others if record.kind and model.sensor_kinds is not None and record.kind not in model.sensor_kinds]
+    names = {record.name for record in own}
+    imus = {record.name: {f"{record.name}_{part}" for part in _OF_IMU} for record in foreign if record.kind == "imu"}
+    parts = {part for found in imus.values() if found <= names for part in found}
+    lacking = [record for record in foreign if not (record.kind == "imu" and imus[record.name] <= names)]
+    pair.add_gap(model, Feature.SENSORS, [_label(record) for record in lacking])
+    return [record for record in others if record not in foreign], [record for record in own if record.name not in parts]
 
 
 def _pair_records(ours: Sequence[Record], theirs: Sequence[Record]) -> tuple[list[tuple[Record, Record]], list[str]]:

@@ -74,8 +74,8 @@ def _without_open_ones(pair: Pair, loops: list[LoopPair]) -> list[LoopPair]:
 def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
     """Closures by name, else by the two bodies that they join; and words about those without a counterpart.
 
-    None where the second robot's format has none: trees are then compared, and a gap names the closures, as it does those that leave a
-    slide free where the format has none of these.
+    None where the second robot's format has none: trees are then compared, and a gap names the closures, as it does those by a screw and
+    those that leave a slide free where the format has none of these.
     """
     if Feature.LOOPS not in pair.b.features:
         labels = [f"'{loop.name}'" if loop.name else f"between {_ends_of(pair.a, loop)}" for loop in pair.a.loops]
@@ -86,11 +86,12 @@ def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
     waiting = list(_with_hinges(pair.b.loops, pair.a.loops, there))
     pairs: list[LoopPair] = []
     findings: list[str] = []
-    sliding: list[str] = []
+    unrepresented: dict[Feature, list[str]] = {}
+    names = {loop.name for loop in pair.a.loops if loop.name is not None}
     for loop in _with_hinges(pair.a.loops, pair.b.loops, back):
-        other = _counterpart(loop, waiting, back)
-        if other is None and loop.kind in _SLIDING and Feature.SLIDING_LOOPS not in pair.b.features:
-            sliding.append(_loop_label(pair.a, loop))
+        other = _counterpart(loop, [other for other in waiting if other.name == loop.name or other.name not in names], back)
+        if other is None and (feature := _needed(loop)) not in pair.b.features:
+            unrepresented.setdefault(feature, []).append(_loop_label(pair.a, loop))
             continue
         if other is None:
             findings.append(f"{_loop_label(pair.a, loop)} is missing")
@@ -100,21 +101,37 @@ def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
         if set(ends) != {loop.body_a, loop.body_b}:
             findings.append(f"{_loop_label(pair.a, loop)} joins other bodies")
         elif (other.kind, other.words) != (loop.kind, loop.words):
-            findings.append(f"{_loop_label(pair.a, loop)} is a {loop.kind}, and a {other.kind} in the other")
+            findings.append(f"{_loop_label(pair.a, loop)} is a {loop.words or loop.kind}, and a {other.words or other.kind} in the other")
         else:
             pairs.append((loop, other, ends[0] != loop.body_a))
     findings += [f"loop '{loop.name or loop.kind}' is new" for loop in waiting]
-    pair.add_gap(pair.b, Feature.SLIDING_LOOPS, sliding)
+    for feature, labels in unrepresented.items():
+        pair.add_gap(pair.b, feature, labels)
     return pairs, findings
 
 
+def _needed(loop: Loop) -> Feature:
+    """What a format must have for a closure of this kind, beside closures."""
+    if loop.words == "screw":
+        return Feature.SCREW_LOOPS
+    return Feature.SLIDING_LOOPS if loop.kind in _SLIDING else Feature.LOOPS
+
+
 def _with_hinges(loops: Iterable[Loop], others: Iterable[Loop], place: Mapping[int, int]) -> Iterator[Loop]:
-    """The loops, two points that stay together as one hinge where the other robot has one; ``place`` leads from its bodies to ours."""
-    hinges = {frozenset((place.get(other.body_a), place.get(other.body_b))) for other in others if other.kind == "hinge"}
-    points: dict[tuple[int, int], list[Loop]] = {}
+    """The loops, two points that stay together as one hinge where the other robot has one; ``place`` leads from its bodies to ours.
+
+    Of several hinges between two bodies each has the points whose names begin with its own.
+    """
+    hinges: dict[frozenset[int | None], list[str]] = {}
+    for other in others:
+        if other.kind == "hinge":
+            hinges.setdefault(frozenset((place.get(other.body_a), place.get(other.body_b))), []).append(other.name or "")
+    points: dict[tuple[int, int, str], list[Loop]] = {}
     for loop in loops:
-        if loop.kind == "connect" and frozenset((loop.body_a, loop.body_b)) in hinges:
-            points.setdefault((loop.body_a, loop.body_b), []).append(loop)
+        names = hinges.get(frozenset((loop.body_a, loop.body_b)))
+        if loop.kind == "connect" and names:
+            name = next((name for name in names if (loop.name or "").startswith(name)), "") if len(names) > 1 else ""
+            points.setdefault((loop.body_a, loop.body_b, name), []).append(loop)
         else:
             yield loop
     for found in points.values():

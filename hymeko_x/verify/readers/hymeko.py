@@ -10,6 +10,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
+from msgspec.structs import replace
 
 from hymeko_x import codes, formats
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
@@ -93,7 +94,7 @@ def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> Kinema
         couplings=tuple(_couplings(mechanism, dofs)),
         loops=tuple(_loops(mechanism, numbers, frames)),
         actuators=tuple(_actuators(mechanism)),
-        sensors=tuple(_records(mechanism, [key for key, _ in mechanism.vertices(parts.Sensor)])),
+        sensors=tuple(_sensors(mechanism)),
         tendons=tuple(_tendons(mechanism, dofs, frames, numbers)),
         features=FEATURES,
         is_independent=False,
@@ -104,6 +105,11 @@ def _actuators(mechanism: Mechanism) -> Iterator[m.Record]:
     """The actuators; of transmissions those that simulators have, without their law, which the text does not give."""
     yield from _records(mechanism, [key for key, part in mechanism.vertices(parts.Actuator) if part.kind != _TRANSMISSION])
     yield from (m.Record(key.name, (), ()) for key in (*commanded(mechanism), *combinations(mechanism)))
+
+
+def _sensors(mechanism: Mechanism) -> Iterator[m.Record]:
+    keys = {key: sensor.kind for key, sensor in mechanism.vertices(parts.Sensor)}
+    yield from (replace(record, kind=kind) for record, kind in zip(_records(mechanism, keys), keys.values(), strict=True))
 
 
 def _records(mechanism: Mechanism, keys: Iterable[Id]) -> Iterator[m.Record]:

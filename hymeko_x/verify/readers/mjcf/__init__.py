@@ -19,7 +19,14 @@ from hymeko_x.verify.features import Feature
 from hymeko_x.verify.kinematics import disagreement
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, Role, Shape, Surface, world_body
 from hymeko_x.verify.readers import native_output
-from hymeko_x.verify.readers.mjcf.constraints import read_actuators, read_couplings, read_loops, read_sensors, read_tied_tendons
+from hymeko_x.verify.readers.mjcf.constraints import (
+    SENSOR_KINDS,
+    read_actuators,
+    read_couplings,
+    read_loops,
+    read_sensors,
+    read_tied_tendons,
+)
 from hymeko_x.verify.readers.mjcf.forces import driven_joints
 from hymeko_x.verify.readers.mjcf.tendons import read_tendons
 from hymeko_x.verify.spatial import pose, quat_from_rotation, rigid, rotation_from_quat
@@ -30,7 +37,13 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.readers.lookup import Lookup
 
-FEATURES = frozenset(Feature) - {Feature.VELOCITY_LIMITS, Feature.FIXED_JOINT_NAMES, Feature.FLAT_COLLISIONS, Feature.SLIDING_LOOPS}
+FEATURES = frozenset(Feature) - {
+    Feature.VELOCITY_LIMITS,
+    Feature.FIXED_JOINT_NAMES,
+    Feature.FLAT_COLLISIONS,
+    Feature.SLIDING_LOOPS,
+    Feature.SCREW_LOOPS,
+}
 
 _KINDS = {
     int(mujoco.mjtJoint.mjJNT_FREE): Kind.FREE,
@@ -101,6 +114,7 @@ def from_compiled(compiled: Any) -> KinematicModel:
         loops=tuple(read_loops(compiled)),
         actuators=tuple(read_actuators(compiled)),
         sensors=tuple(read_sensors(compiled)),
+        sensor_kinds=SENSOR_KINDS,
         tendons=tuple(read_tendons(compiled, joint_dofs)) if compiled.ntendon else (),
         tied_tendons=tuple(read_tied_tendons(compiled)),
         features=FEATURES,

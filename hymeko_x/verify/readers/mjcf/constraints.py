@@ -112,10 +112,19 @@ def read_actuators(compiled: Any) -> Iterator[Record]:
         yield Record(compiled.actuator(i).name or None, words, _actuator_numbers(compiled, i))
 
 
+def _kind(sensor: Any) -> str:
+    """MuJoCo's name of a kind of sensor, as it stands in MJCF."""
+    return str(sensor.name).removeprefix("mjSENS_").lower()
+
+
+SENSOR_KINDS = frozenset(map(_kind, mujoco.mjtSensor.__members__.values()))
+"""The kinds of sensors that MJCF has."""
+
+
 def read_sensors(compiled: Any) -> Iterator[Record]:
     """What each sensor measures, of what, and where it cuts its values off."""
     for i in range(compiled.nsensor):
-        kind = mujoco.mjtSensor(int(compiled.sensor_type[i])).name.removeprefix("mjSENS_").lower()
+        kind = _kind(mujoco.mjtSensor(int(compiled.sensor_type[i])))
         objects = zip(
             (compiled.sensor_objtype[i], compiled.sensor_reftype[i]), (compiled.sensor_objid[i], compiled.sensor_refid[i]), strict=True
         )

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 FEATURES = frozenset(
     {
         *(Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.POSITION_LIMITS),
-        *(Feature.LOOPS, Feature.SLIDING_LOOPS),
+        *(Feature.LOOPS, Feature.SLIDING_LOOPS, Feature.SCREW_LOOPS),
     }
 )
 _SHAPES = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FLAT_COLLISIONS})

@@ -41,6 +41,7 @@ FEATURES = frozenset(Feature) - {
     Feature.TIED_TENDONS,
     Feature.LOOPS,
     Feature.SLIDING_LOOPS,
+    Feature.SCREW_LOOPS,
     Feature.OPEN_LOOPS,
     Feature.CURVES,
 }
