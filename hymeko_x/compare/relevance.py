@@ -115,7 +115,7 @@ class _Relevance:
 
 
 def is_idle(difference: Difference) -> bool:
-    """Whether it is an extra that holds nothing of a robot: an empty group, or the extent of a geometry."""
+    """Whether it is an extra that holds nothing of a robot: a group, the root of an articulation, the extent of a geometry."""
     row = format_of(difference.field)
     texts = [text for text in (difference.before, difference.after) if text is not None]
     return row is not None and bool(row.idle_extras and texts) and all(re.fullmatch(row.idle_extras, text) for text in texts)

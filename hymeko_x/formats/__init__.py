@@ -171,7 +171,10 @@ USD = Format(
     memory=MappingProxyType({"pxr": "hymeko_x.verify.readers.usd.memory:load"}),
     stated_notations=MappingProxyType({"pose on the stage": "usd.pose"}),
     names_are_identifiers=True,
-    idle_extras=r'(?:over|def(?: Scope| Xform)?) "[^"\n]*"\s*\{\s*(?:float3\[\] extent = \[[^\]]*\]\s*)?\}',
+    idle_extras=(
+        r'(?:over|def(?: Scope| Xform)?) "[^"\n]*"\s*(?:\(\s*(?:prepend apiSchemas = \["PhysicsArticulationRootAPI"\]\s*)?'
+        r'(?:kind = "[^"\n]*"\s*)?\)\s*)?\{\s*(?:float3\[\] extent = \[[^\]]*\]\s*)?\}'
+    ),
     settings="hymeko_x.formats.usd.settings:settings",
     precision=1e-6,  # eight roundings of single precision: numbers are converted between units and frames on the way
     missing_shapes=frozenset({"hfield"}),

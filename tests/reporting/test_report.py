@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import jsonschema
 import pytest
 
+import hymeko_x as hx
 from hymeko_x import codes
 from hymeko_x.cli import exits, main
 from hymeko_x.cli.report import MOST_LINES, brief_lines
@@ -226,6 +227,22 @@ def test_settings_of_a_stage_are_called_by_types_schemas_and_properties() -> Non
 
 
 # ---- what a loss is ------------------------------------------------------------------------------------------------------
+
+
+ARM = """<robot name="u"><link name="a"/><link name="b"/>
+<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>"""
+
+
+def test_the_frame_of_a_stage_is_no_loss(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The default prim with its kind, and the root of the articulation, are how a stage holds any robot."""
+    (folder / "u.urdf").write_text(ARM, "utf-8")
+    hx.convert(folder / "u.urdf", folder / "u.usda")
+    assert "PhysicsArticulationRootAPI" in (folder / "u.usda").read_text("utf-8")
+    assert [line for line in reported(folder / "u.usda", capsys) if line.startswith("dropped")] == []
+    scene = '(\n    prepend apiSchemas = ["PhysicsArticulationRootAPI", "PhysxArticulationAPI"]'
+    text = (folder / "u.usda").read_text("utf-8").replace('(\n    prepend apiSchemas = ["PhysicsArticulationRootAPI"]', scene)
+    (folder / "u.usda").write_text(text, "utf-8")
+    assert [line for line in reported(folder / "u.usda", capsys) if line.startswith("dropped")] != []
 
 
 def loss(element: str, field: str, before: str | None, after: str | None, fate: Fate = "approximated") -> Loss:
