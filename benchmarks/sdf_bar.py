@@ -2,7 +2,7 @@
 
     python -m benchmarks.sdf_bar reading [FILE | FOLDER ...]    # own reader against Drake's, SDF -> IR -> SDF a fixed point
     python -m benchmarks.sdf_bar leaving [FILE | FOLDER ...]    # SDF into every other format; MJCF steps; what is kept comes back
-    python -m benchmarks.sdf_bar arriving [FILE ...]            # robots in other formats into SDF, read by Drake, and back
+    python -m benchmarks.sdf_bar arriving [FILE ...]            # robots in other formats into SDF, read by Drake and libsdformat, and back
 
 Without files: the SDF files of the catalogue, and for ``arriving`` the development files of URDF, MJCF and USD. Each file has a process
 and a time limit of its own, and a line that says in which ways it went. The exit code is 1 when one is different.
@@ -28,6 +28,7 @@ from hymeko_x.corpus import cache, catalog
 from hymeko_x.diagnostics import Refusal, Report, Severity
 from hymeko_x.verify import verify
 from tests.sdf.canonical import canonical
+from tests.sdf.names import is_accepted, library
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -43,6 +44,8 @@ SECONDS = 300.0
 """How long one file may take."""
 INERTIA = 1e-10
 """By how much masses (kg) and tensors (kg m^2) may differ, of the value where that is larger than one."""
+_RELEASE_OF_1_0 = 3
+"""libsdformat 12 reads SDF up to 1.9, 13 up to 1.10, and so on."""
 SAME, EQUAL, NOTHING, DIFFERENT = "same", "equal", "nothing to compare", "DIFFERENT"
 OTHERS = (formats.MJCF, formats.URDF, formats.USD, formats.XACRO, formats.HYMEKO)
 KEEP: tuple[Literal["beside", "inside"], ...] = ("beside", "inside")
@@ -105,7 +108,18 @@ def arriving(path: Path) -> Ways:
             found[origin] = _tried(lambda there=there, keep=keep: _there(str(path), _read(path), there, keep))
             original = str(path if keep else there)
             found[f"{origin} and back"] = _tried(lambda original=original, there=there, back=back: _there(original, _read(there), back))
+        if library() and Path(folder, "there", "m.sdf").exists():
+            found["libsdformat"] = _checked(Path(folder, "there", "m.sdf"))
     return found
+
+
+def _checked(file: Path) -> str:
+    """Whether libsdformat accepts a file, where it knows the version."""
+    version = re.search(r'<sdf version="1\.(\d+)"', file.read_text("utf-8"))
+    release = re.search(r"sdformat(\d+)", library() or "")
+    if version is None or release is None or int(version[1]) > int(release[1]) - _RELEASE_OF_1_0:
+        return "has a later version than libsdformat"
+    return "accepted" if is_accepted(str(file)) else f"{DIFFERENT}: refused"
 
 
 WAYS: dict[str, Callable[[Path], Ways]] = {"reading": reading, "leaving": leaving, "arriving": arriving}
