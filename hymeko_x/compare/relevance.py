@@ -8,6 +8,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
+from hymeko_x.compare.closures import Closures
 from hymeko_x.compare.extras import format_of
 from hymeko_x.ir.kinematics import displacement
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, numbers_weight, pose_weight
@@ -55,11 +56,11 @@ def relevant(
     """The differences from ``before`` to ``after`` without those that are none of the robot.
 
     No loss is: another axis of a ball or a free joint, which has none; another mass or density of a shape without one, on the world or
-    on a body whose mass and tensor are given; a centre of mass and a tensor that HyMeKo text leaves to the shapes; other frames of a joint
-    that moves its body alike; the colour of a material on the shape itself; another axis along which a turned mesh is mirrored; an effort
-    limit that is what the actuators of the source can exert; a frame that is where the body of its name is; an extra that holds nothing; a
-    pose that is a keyframe; a sensor, a camera or a text that is held in a fragment, as ``is_held`` says. What an author wrote counts,
-    used or not.
+    on a body whose mass and tensor are given; a centre of mass and a tensor that HyMeKo text leaves to the shapes; other frames of a
+    joint that moves its body alike; the colour of a material on the shape itself; another axis along which a turned mesh is mirrored;
+    an effort limit that is what the actuators of the source can exert; a frame that is where the body of its name is; frames at which a
+    closure holds the same points together; an extra that holds nothing; a pose that is a keyframe; a sensor, a camera or a text that is
+    held in a fragment, as ``is_held`` says. What an author wrote counts, used or not.
     """
     is_none = _Relevance(found, before, after, tolerance).is_none
     for difference in found:
@@ -80,6 +81,7 @@ class _Relevance:
         if native is None or native.held is None:
             self.described |= {*_in_fragments(before, after)}
         self.weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
+        self.closures = Closures(before, after, tolerance)
         self._alike: dict[Id, bool] = {}
 
     def is_none(self, difference: Difference) -> bool:
@@ -88,6 +90,8 @@ class _Relevance:
         if _is_described_otherwise(difference, self.before, self.after) or is_idle(difference):
             return True
         if not field and difference.after is None and key in self.described:
+            return True
+        if self.closures.describes_the_same(difference):
             return True
         if key in self.turned and (field == "scale" or field.startswith("[0].weight")):
             return True
