@@ -35,6 +35,8 @@ def models(draw: Any, scope: str = "m", depth: int = 0) -> str:
     """A model of up to seven links in a tree, with frames on them, joints of every kind, and models in it."""
     count = draw(st.integers(1, 7 if depth == 0 else 3))
     links = [f"{scope}_l{number}" for number in range(count)]
+    if count > 1 and draw(st.booleans()):
+        links[-1] = scope  # a link may be called as its model
     known = ["__model__"]
     parts = []
     nested = draw(st.integers(0, 2)) if depth < 2 else 0

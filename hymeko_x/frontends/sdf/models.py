@@ -45,7 +45,7 @@ def collect_models(tops: list[Node], builder: SdfBuilder, *, is_alone: bool) -> 
 
 def _alone(node: Node, builder: SdfBuilder) -> Model:
     frame = Id("frame", words.MODEL_FRAME)
-    builder.named |= {words.MODEL_FRAME: frame, node.attributes.get("name", ""): frame}
+    builder.named[words.MODEL_FRAME] = frame
     return Model(node, "", frame, is_static=_is_static(node, None, ROOT, builder))
 
 
