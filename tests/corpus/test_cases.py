@@ -22,7 +22,7 @@ from tests.corpus.folder import MJCF, fill
 
 def test_the_catalogue_lists_about_five_hundred_robots_each_once() -> None:
     listed = [(package.name, path) for package in catalog.load() for _, path in package.listed()]
-    assert len(listed) == len(set(listed)) == 491
+    assert len(listed) == len(set(listed)) == 503
     assert {format for package in catalog.load() for format, _ in package.listed()} == {"urdf", "mjcf", "xacro", "usd", "sdf"}
 
 

@@ -64,7 +64,7 @@ def test_every_development_file_is_something_that_the_cache_keeps() -> None:
 
 def test_the_development_files_are_as_many_of_each_format_as_the_bounds_count_on() -> None:
     counts = {format: len(catalog.development_files(format)) for format in ("urdf", "mjcf", "xacro", "usd", "sdf")}
-    assert counts == {"urdf": 60, "mjcf": 80, "xacro": 30, "usd": 30, "sdf": 9}
+    assert counts == {"urdf": 60, "mjcf": 80, "xacro": 30, "usd": 30, "sdf": 16}
 
 
 def test_packages_are_selected_in_catalogue_order_whatever_the_spelling() -> None:
