@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 choose_backend()  # MuJoCo decides how it draws when it is imported, by whichever test that is
 
-# The same examples in every run, so that a change is judged by what it changed, not by a busy machine; `HYPOTHESIS_PROFILE=search` looks for new ones.
+# The same examples in every run, however busy the machine is, so that a change is judged by what it changed;
+# `HYPOTHESIS_PROFILE=search` looks for new ones.
 settings.register_profile("same", derandomize=True, database=None, deadline=None)
 # `ci` and `nightly` look for new ones for minutes and for hours (`make fuzz`): tests of laws take their number from the profile.
 settings.register_profile("search", derandomize=False)
