@@ -129,8 +129,8 @@ def _there(reference: str | Robot, robot: Robot, file: Path, keep: Literal["besi
     """A robot written into a file, against what it was written from. MJCF is stepped as well."""
     file.parent.mkdir()
     api.dump(robot, file, assets=None if formats.of_output(str(file)).holds_files else "copy", lenient=True, keep=keep)
-    verdict = verify(reference, str(file), samples=SAMPLES)
-    return _state(verdict) if file.suffix != ".xml" or _steps(file) else f"{DIFFERENT}: MuJoCo's state is not finite"
+    state = _state(verify(reference, str(file), samples=SAMPLES))
+    return _stepped(file) or state if file.suffix == ".xml" else state
 
 
 def _kept(path: Path, robot: Robot, file: Path, keep: Literal["beside", "inside"]) -> str:
@@ -158,15 +158,18 @@ def _read(file: Path, origin: Path | None = None, report: Report | None = None) 
     return api.load(file, lenient=True, report=report, search_path=places(origin or file))
 
 
-def _steps(file: Path) -> bool:
-    """Whether MuJoCo's state stays finite."""
+def _stepped(file: Path) -> str:
+    """What is wrong with a robot in MuJoCo: that it refuses the file, as where images are missing, or that the state is not finite."""
     import mujoco
     import numpy as np
 
-    model = mujoco.MjModel.from_xml_path(str(file))
+    try:
+        model = mujoco.MjModel.from_xml_path(str(file))
+    except ValueError as error:
+        return f"refused by MuJoCo: {error}"
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data, STEPS)
-    return bool(np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all())
+    return "" if np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all() else f"{DIFFERENT}: MuJoCo's state is not finite"
 
 
 def _state(verdict: Verdict) -> str:
