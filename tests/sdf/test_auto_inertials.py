@@ -48,6 +48,20 @@ def test_a_mass_of_the_author_counts(folder: Path) -> None:
     assert inertial.mass == pytest.approx(3.0)
 
 
+def test_collisions_without_weight_have_no_inertial(folder: Path) -> None:
+    text = MODEL.format("<mass>3</mass>").replace("<density>500</density>", "<density>0</density>")
+    (folder / "m.sdf").write_text(text[: text.index('<collision name="d">')] + "</link></model></sdf>", "utf-8")
+    hx.convert(folder / "m.sdf", folder / "m.urdf")
+    assert "<inertial" not in (folder / "m.urdf").read_text("utf-8").partition("<gazebo")[0]
+
+
+def test_an_inertial_that_is_not_finite_is_refused(folder: Path) -> None:
+    (folder / "m.sdf").write_text(MODEL.format("").replace("500", "1e308"), "utf-8")
+    with pytest.raises(hx.Refusal, match="body 'a': the inertial of its collisions is not finite"):
+        hx.convert(folder / "m.sdf", folder / "m.urdf")
+    assert not (folder / "m.urdf").exists()
+
+
 @pytest.mark.unread("HX103", "HX201")
 def test_a_mesh_that_is_not_there_is_reported(folder: Path) -> None:
     (folder / "box.stl").unlink()
