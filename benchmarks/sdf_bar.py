@@ -135,11 +135,10 @@ def _there(reference: str | Robot, robot: Robot, file: Path, keep: Literal["besi
 
 def _kept(path: Path, robot: Robot, file: Path, keep: Literal["beside", "inside"]) -> str:
     """A file through another format and back, with what that cannot say: is it written as without that way?"""
-    direct, back = file.parent / "direct" / "m.sdf", file.parent / "back" / "m.sdf"
-    for folder in (direct.parent, back.parent):
-        folder.mkdir(parents=True)
-    api.dump(robot, file, assets="copy", keep=keep, lenient=True)
+    direct, back = file.parent / "direct.sdf", file.parent / "back.sdf"
+    file.parent.mkdir()
     api.dump(robot, direct, assets="copy", lenient=True)
+    api.dump(robot, file, assets="copy", keep=keep, lenient=True)
     api.dump(_read(file, path), back, assets="copy", lenient=True)
     lines = _without_folders(direct), _without_folders(back)
     if lines[0] == lines[1]:

@@ -22,7 +22,7 @@ from hymeko_x.residue.align import align
 from hymeko_x.source import Package, PackageFiles
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
@@ -43,10 +43,10 @@ def copied(
         return None
     if _is_folder(os.path.dirname(source.name) or ".", place.folder):
         return Package(source.data)
-    found = Report()
+    found, opened = Report(), tuple(source.files.opened) if isinstance(source.files, DiskFiles) else ()
     shelf = Shelf(place.assets or format.assets, place.folder, around=place.around, origin=source.name)
     placed = _placed(mechanism, format, shelf, source.files, found)
-    package = _with_text(source, format, mechanism, placed, Package(source.data, shelf.files, shelf.copies))
+    package = _with_text(source, format, mechanism, placed, Package(source.data, shelf.files, shelf.copies), opened)
     if package is None or not _is_same_robot(package, source, format, placed, place.folder, kept):
         return None
     report.extend(found)
@@ -65,15 +65,16 @@ def _placed(mechanism: Mechanism, format: Format, shelf: Shelf, files: Files, re
     return keep_references(mechanism, shelf, files, report, Keep.PACKAGES if shelf.mode == "reference" else Keep.PACKAGES_AND_PATHS)
 
 
-def _with_text(source: Source, format: Format, before: Mechanism, after: Mechanism, package: Package) -> Package | None:
-    """The package with the text in which the paths are those of the mechanism ``after``, and with the files that it includes."""
+def _with_text(
+    source: Source, format: Format, before: Mechanism, after: Mechanism, package: Package, opened: Collection[str]
+) -> Package | None:
+    """The package with the text in which the paths are those of the mechanism ``after``, and with the files ``opened`` for reading it."""
     home = os.path.dirname(source.name) or "."
     changed: dict[str, bytes] = {}
     if after is not before:
         if format.outline is None:
             return None
         changed = text_with_edits(_with_placed(source, package), format, before, after, Report()).changed
-    opened = source.files.opened if isinstance(source.files, DiskFiles) else {}
     changed = {**changed, **_with_includes_below(source, changed, opened, home)}
     copies = {name: path for path in opened if (name := _below(path, home)) is not None and path not in changed}
     files = {name: data for path, data in changed.items() if path != source.name and (name := _name_below(path, home)) is not None}

@@ -76,6 +76,16 @@ def test_of_a_file_that_moves_only_the_path_changes(tmp_path: Path) -> None:
     assert (tmp_path / "b/meshes/plate.stl").exists()
 
 
+def test_a_mesh_under_a_new_path_is_not_copied_under_the_old_one_as_well(tmp_path: Path) -> None:
+    text = ARM.replace('<box size="0.20 0.2 0.05"/>', '<mesh filename="file://plate.stl"/>')
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "a/plate.stl").write_bytes(b"solid plate\nendsolid plate\n")
+    (tmp_path / "a/arm.urdf").write_text(text)
+    hx.convert(tmp_path / "a/arm.urdf", tmp_path / "b/arm.urdf")
+    assert sorted(path.relative_to(tmp_path / "b").as_posix() for path in (tmp_path / "b").rglob("*.*")) == ["arm.urdf", "meshes/plate.stl"]
+
+
 def test_an_option_that_changes_the_robot_gives_a_new_text(tmp_path: Path) -> None:
     source, target = tmp_path / "a.urdf", tmp_path / "b.urdf"
     source.write_text(ARM)
