@@ -24,7 +24,15 @@ from hymeko_x.edits.differences import (
     is_without_inertial,
 )
 from hymeko_x.edits.poses import with_edited_poses
-from hymeko_x.edits.unnamed import stem, unnamed_bodies, unnamed_edges, with_same_assets, with_same_edges, with_same_numbers
+from hymeko_x.edits.unnamed import (
+    stem,
+    unnamed_bodies,
+    unnamed_edges,
+    with_same_assets,
+    with_same_edges,
+    with_same_numbers,
+    without_counted_names,
+)
 from hymeko_x.edits.weights import heavier, with_computed_gains, with_least_masses, without_followed
 from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, Mechanism
 from hymeko_x.ir.names import rename
@@ -139,7 +147,7 @@ class Conversion:
         numbered = with_same_edges(
             with_same_numbers(read, image, self._unnamed_bodies()), image, self._in_image(unnamed_edges(self.mechanism))
         )
-        edited = with_same_assets(numbered, image)
+        edited = without_counted_names(with_same_assets(numbered, image), image)
         sources = {key: self.mechanism.graph.vertices.get(self._homes.get(key, key)) for key, _ in edited.vertices(Actuator)}
         return with_computed_gains(with_least_masses(edited, image), self._first_image, image, sources)
 

@@ -5,14 +5,17 @@ Bodies are found by what they are, contacts and closures by what they join.
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.names import Names, rename
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import Body
-from hymeko_x.residue.pairing import essence_of, rounded
+from hymeko_x.ir.parts import Body, Role, Shape
+from hymeko_x.residue.pairing import essence_of, reordered_shapes, rounded
 from hymeko_x.rewrite.references import with_references
 
 if TYPE_CHECKING:
@@ -21,6 +24,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge
 
 _JOINING = frozenset({"contact", "loop", "coupling"})
+_COUNTED = re.compile(rf"({'|'.join(role.value for role in Role)})_\d+")
 
 
 def unnamed_bodies(robot: Mechanism) -> set[Id]:
@@ -116,19 +120,30 @@ def _joined(key: Id, edge: RobotEdge) -> object:
 
 
 def with_same_assets(edited: Mechanism, image: Mechanism) -> Mechanism:
-    """The edited robot, in which meshes and images whose id is that of another one in the image have the ids of the same ones there.
+    """The edited robot, in which meshes and images that have other ids in the image have the ids of the same ones there.
 
-    Without one shape, a stage without names of meshes counts them otherwise.
+    Without one shape, a stage without names of meshes counts them otherwise, and names that are made of files are shorter.
     """
     mine, theirs = dict(edited.assets()), dict(image.assets())
-    if not any(key in theirs and theirs[key] != part for key, part in mine.items()):
-        return edited
     waiting: dict[object, list[Id]] = defaultdict(list)
     for key in reversed([key for key, part in theirs.items() if mine.get(key) != part]):
         waiting[theirs[key]].append(key)
-    doubtful = {key: part for key, part in mine.items() if key in theirs and theirs[key] != part}
-    names = {key: same.pop() for key, part in doubtful.items() if (same := waiting.get(part))}
-    return rename(edited, names | _made_way(edited, names))
+    names = {key: same.pop() for key, part in mine.items() if theirs.get(key) != part and (same := waiting.get(part))}
+    return rename(edited, names | _made_way(edited, names)) if names else edited
+
+
+def without_counted_names(edited: Mechanism, image: Mechanism) -> Mechanism:
+    """The edited robot without names of shapes that only count them, such as ``visual_2``, where the same shapes have none in the image.
+
+    They are read as names where a shape before them is gone.
+    """
+    pairs = reordered_shapes(edited, image)
+    edges: dict[Id, RobotEdge] = {}
+    for key, shape, _ in edited.edges(Shape):
+        name, same = shape.name or "", image.graph.edges.get(pairs.get(key, key))
+        if _COUNTED.fullmatch(name) and same is not None and isinstance(same.data, Shape) and not same.data.name:
+            edges[key] = replace(edited.graph.edges[key], data=replace(shape, name=None))
+    return edited.replace(edges=edges)
 
 
 def _made_way(robot: Mechanism, names: dict[Id, Id]) -> dict[Id, Id]:

@@ -19,7 +19,7 @@ from hymeko_x.diagnostics import Origin, Refusal, Report, counted, listed, refus
 from hymeko_x.edits.conversion import Conversion, new_assets
 from hymeko_x.edits.differences import is_given_again, is_inherited, is_weight
 from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
-from hymeko_x.edits.unnamed import unnamed_bodies, unnamed_edges, with_same_edges, with_same_numbers
+from hymeko_x.edits.unnamed import unnamed_bodies, unnamed_edges, with_same_assets, with_same_edges, with_same_numbers
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import Body, Mesh, Shape, Texture
 from hymeko_x.memory import remembering
@@ -129,7 +129,7 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
     report.extend(conversion.notes)
     old = {path: original.data if path == original.name else original.files.read(path) for path in changed}
     robot = with_same_numbers(found.before, first.before, unnamed_bodies(first.before))
-    robot = with_same_edges(robot, first.before, unnamed_edges(first.before))
+    robot = with_same_assets(with_same_edges(robot, first.before, unnamed_edges(first.before)), first.before)
     edits = diff(first.before, rename(robot, _called_after(first.before, robot)), TOLERANCE)
     return Updated(replace(found.before, origins=first.before.origins), edits, original.data, changed, old, beside, report)
 
@@ -138,6 +138,7 @@ def _round(original: Source, format: Format, conversion: Conversion, edited: Sou
     """The edits that a text does not have yet, carried over to it."""
     before = pipeline.read(original, format, Report(), lenient=conversion.is_known)
     after, beside = _with_new_assets(before, conversion.edited_mechanism(before, original), edited)
+    original = replace(original, files=EditedFiles(original.files, beside)) if beside else original
     after = _without_unused(before, _with_imported_names(before, after, imported(original, format, before)))
     every = diff(before, after, TOLERANCE)
     after = _without_rounding(before, after, {edit.element for edit in every})

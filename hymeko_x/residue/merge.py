@@ -17,7 +17,9 @@ from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Shape, Texture
 from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.alike import URI, holds, is_alike, is_moved, without_surface
-from hymeko_x.residue.arcs import with_edited_weights, with_own_ends, without_lost_material
+from hymeko_x.residue.arcs import ARCS, with_edited_weights, with_own_ends, without_lost_material
+from hymeko_x.residue.balls import DOFS, ENDS, hinges_of_balls, moved_and_apart
+from hymeko_x.residue.colours import pieces_of_meshes, taken_apart, with_first_pieces
 from hymeko_x.residue.landmarks import renamed_since
 from hymeko_x.residue.parts import GEOMETRY, broken, capsules_of, parts_of
 from hymeko_x.residue.realign import realign, with_new_names, with_old_names
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.compare.leaves import Path
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
+    from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.parts import VertexPart
     from hymeko_x.residue import Change, Element, Residue
 
@@ -78,8 +80,12 @@ class _Merge:
     """How many values of the source have been put in."""
     _parts: dict[Id, list[Element]] = field(init=False)
     """The other parts of shapes that the image has in several."""
-    _broken: set[Id] = field(init=False)
-    """Those of which one part was edited by itself."""
+    _broken: dict[Id, tuple[Path, ...]] = field(init=False)
+    """Those of which one part was edited by itself, and where what they share stands in them."""
+    _apart: set[Id] = field(init=False)
+    """Those among them that are meshes of several colours."""
+    _moved: dict[Id, RobotArc] = field(init=False)
+    """The arcs to their parents of balls that were moved."""
     _shapes_then: dict[Id, list[Element]] = field(init=False)
     """The shapes that bodies had in the image, of those that the residue tells of."""
 
@@ -90,9 +96,14 @@ class _Merge:
         for element in (*self.residue.removals, *self.residue.weights):
             if element.id.kind == "shape" and isinstance(element.part, Edge):
                 self._shapes_then[_body_of(element.part)].append(element)
-        self._parts = parts_of(self.residue)
-        self._broken = broken(self.image, self._parts)
+        capsules, meshes, balls = parts_of(self.residue), pieces_of_meshes(self.residue), hinges_of_balls(self.residue)
+        self._apart = taken_apart(self.image, self.residue, meshes)
+        self._moved, hinges = moved_and_apart(self.image, balls)
+        self._parts = capsules | meshes | balls
+        self._broken = dict.fromkeys(broken(self.image, capsules), (GEOMETRY,))
+        self._broken |= dict.fromkeys(self._apart, (ARCS,)) | dict.fromkeys(hinges, (DOFS, ENDS))
         name = self._change_fields()
+        with_first_pieces(self.image, self.vertices, self.edges, self.residue, self._apart)
         kept, withheld = self._edited_shapes()
         self._add(withheld)
         removed = self._remove(kept)
@@ -114,7 +125,8 @@ class _Merge:
             elif key in self.vertices:
                 self.vertices[key] = self._changed(key, self.vertices[key], changes)
             elif key in self.edges:
-                self.edges[key] = with_own_ends(self._changed(key, self.edges[key], changes))
+                edge = with_own_ends(self._changed(key, self.edges[key], changes))
+                self.edges[key] = replace(edge, arcs=(self._moved[key], *edge.arcs[1:])) if key in self._moved else edge
             else:
                 self._note(key, "is gone, and with it what was kept for it")
         return name
@@ -127,10 +139,11 @@ class _Merge:
         return str(change.value)
 
     def _changed(self, key: Id, part: P, changes: list[Change]) -> P:
-        is_broken = key in self._broken
         changes = [with_edited_weights(part, change) for change in changes]
-        edited = [change for change in changes if (is_broken and change.path == GEOMETRY) or not self._still_holds(key, part, change)]
-        if edited:
+        edited = [change for change in changes if self._is_broken(change) or not self._still_holds(key, part, change)]
+        if key in self._apart:
+            self._note(key, "stays in several pieces, since one of them was edited")
+        elif edited:
             self._note(key, f"was edited: {', '.join(dict.fromkeys(_path_text(change.path) for change in edited))} stays as it is now")
         barred = _barred(part, changes, edited) if edited else set()
         valid = without_lost_material(part, [change for change in changes if change.path not in barred], edited)
@@ -140,6 +153,10 @@ class _Merge:
             return changed
         self._note(key, "stays as it is: what was kept for it is damaged")
         return part
+
+    def _is_broken(self, change: Change) -> bool:
+        """Whether a change is of what an element shares with parts of which one was edited by itself."""
+        return any(change.path[: len(path)] == path for path in self._broken.get(change.element, ()))
 
     def _still_holds(self, key: Id, part: object, change: Change) -> bool:
         try:
@@ -188,9 +205,14 @@ class _Merge:
         edited = {group for group, members in stand_ins.items() if not all(map(self._is_untouched, members))}
         kept = loose | {removal.id for group in edited for removal in stand_ins[group]}
         withheld = {added.id for added in self.residue.additions if added.id.kind == "shape" and group_of(added) in edited}
+        withheld |= {added.id for added in self.residue.additions if self._is_of_mesh_apart(added)}
         for key in withheld:
             self._note(key, "is not restored, because what stands for it was edited")
         return kept, withheld
+
+    def _is_of_mesh_apart(self, added: Element) -> bool:
+        """Whether an element is the part of a mesh in a material of its own, where the mesh was taken apart."""
+        return added.id.kind == "subset" and isinstance(added.part, Edge) and any(arc.target in self._apart for arc in added.part.arcs)
 
     def _is_untouched(self, then: Element) -> bool:
         graph = self.image.graph

@@ -39,11 +39,11 @@ def parts_of(residue: Residue) -> dict[Id, list[Element]]:
     waiting: dict[str, list[Element]] = {}
     for removal in residue.removals:
         if isinstance(removal.part, Edge) and isinstance(removal.part.data, Shape) and isinstance(removal.part.data.geometry, Sphere):
-            waiting.setdefault(_row(removal.id), []).append(removal)
+            waiting.setdefault(row_of(removal.id), []).append(removal)
     found: dict[Id, list[Element]] = {}
     for change in residue.changes:
         if change.path == GEOMETRY and isinstance(change.value, Capsule):
-            balls = waiting.get(_row(change.element), [])
+            balls = waiting.get(row_of(change.element), [])
             ends = next((list(pair) for pair in pairwise(balls) if _are_ends(change.value, *pair)), [])
             for ball in ends:
                 balls.remove(ball)
@@ -84,7 +84,7 @@ def _where(body: Id, role: Role, geometry: Geometry, place: Vec3) -> object:
     return body, role, type(geometry), tuple(round(number, _DIGITS) + 0.0 for number in (*place, *sizes))
 
 
-def _row(key: Id) -> str:
+def row_of(key: Id) -> str:
     """The name of a shape without the number that it has among those of its body."""
     row, mark, number = key.name.rpartition(_MARK)
     return row if mark and number.isdigit() else key.name

@@ -128,16 +128,18 @@ def _seen_from(dof: Dof, frame: Pose) -> Dof:
 
 
 def join_twins(mechanism: Mechanism, joins: Iterable[Join]) -> Mechanism:
-    """Shapes that are seen and touched alike, as one with the friction of what is touched."""
+    """Shapes that are seen and touched alike, as one with the friction of what is touched; also where only that is left."""
     edges: dict[Id, RobotEdge] = {}
     gone: list[Id] = []
+    alone: dict[Id, Id] = {}
     for shape, twin in joins:
         seen, touched = mechanism.graph.edges.get(shape), mechanism.graph.edges.get(twin)
-        if seen is None or touched is None or not are_twins(seen, touched):
-            continue
-        edges[shape] = replace(seen, data=replace(_shape(seen), role=Role.BOTH, friction=_shape(touched).friction))
-        gone.append(twin)
-    return mechanism.replace(edges=edges, without=gone) if edges else mechanism
+        if seen is None and touched is not None:
+            alone[twin] = shape
+        elif seen is not None and touched is not None and are_twins(seen, touched):
+            edges[shape] = replace(seen, data=replace(_shape(seen), role=Role.BOTH, friction=_shape(touched).friction))
+            gone.append(twin)
+    return rename(mechanism.replace(edges=edges, without=gone), alone) if edges or alone else mechanism
 
 
 def are_twins(seen: RobotEdge, touched: RobotEdge) -> bool:

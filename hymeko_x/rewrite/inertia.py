@@ -17,7 +17,7 @@ from hymeko_x.ir.solids import with_tensor_of
 from hymeko_x.ir.values import numbers_text
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterator
+    from collections.abc import Callable, Container, Iterator
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism
@@ -74,15 +74,15 @@ def make_tensors_physical(mechanism: Mechanism, context: Context) -> Mechanism:
     return mechanism.replace(vertices=changed)
 
 
-def give_moving_bodies_mass(mechanism: Mechanism, context: Context) -> Mechanism:
-    """A body that moves gets the least mass and inertia when neither it nor a body fixed to it has both.
+def give_moving_bodies_mass(mechanism: Mechanism, context: Context, is_meant: Callable[[Id], bool] = lambda _: True) -> Mechanism:
+    """A body that moves, and ``is_meant``, gets the least mass and inertia when neither it nor a body fixed to it has both.
 
     Source: MuJoCo's compiler, which looks for one body with mass and all principal moments among the moving body and
     what is welded to it, and refuses the model otherwise.
     """
     changed: dict[Id, Body] = {}
     for key in moving_bodies(mechanism):
-        if any(_is_sound(mechanism.vertex(body, Body)) for body in welded_to(mechanism, key)):
+        if not is_meant(key) or any(_is_sound(mechanism.vertex(body, Body)) for body in welded_to(mechanism, key)):
             continue
         body = mechanism.vertex(key, Body)
         new = _least_inertial(body.inertial)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import mujoco
 import pytest
+from lxml import etree
 
 import hymeko_x as hx
 
@@ -61,3 +63,41 @@ def test_a_mass_that_a_new_shape_gives_a_body_without_one_is_reported(tmp_path: 
     edits, notes = updated(tmp_path, "there.urdf", (r'<link name="hip_link"/>', f'<link name="hip_link">{SHAPE}</link>'))
     assert edits
     assert [note.partition(" is inertial(")[0] for note in notes] == ["it changed with the edits: body 'hip_link' inertial"]
+
+
+WRAP = """<mujoco model="arm">
+  <worldbody>
+    <site name="a" pos="0 0 1"/>
+    <body name="arm">
+      <joint/>
+      <geom name="roll" type="cylinder" size="0.1 0.2"/>
+      <geom type="sphere" size="0.1" pos="1 0 0"/>
+      <site name="b" pos="1 0 1"/>
+    </body>
+  </worldbody>
+  <tendon>
+    <spatial>
+      <site site="a"/>
+      <geom geom="roll"/>
+      <site site="b"/>
+    </spatial>
+  </tendon>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101", "HX104")
+def test_a_geom_whose_visual_half_is_removed_still_guides_its_tendon(tmp_path: Path) -> None:
+    original, there = tmp_path / "arm.xml", tmp_path / "arm.sdf"
+    original.write_text(WRAP)
+    hx.convert(original, there)
+    tree = etree.parse(there)
+    visual = tree.getroot().find(".//visual[@name='roll']")
+    visual.getparent().remove(visual)
+    tree.write(there)
+    hx.update(original, there)
+    model = mujoco.MjModel.from_xml_path(str(original))
+    assert (model.ntendon, model.nwrap, model.ngeom) == (1, 3, 2)
+    assert [model.geom(number).group[0] for number in range(2)] == [3, 0]
+    assert not model.geom(1).name
+    assert hx.update(original, there).edits == ()

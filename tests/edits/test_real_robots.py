@@ -21,6 +21,7 @@ from hymeko_x.edits.updating import update
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.residue.align import align
 from hymeko_x.rewrite import Options
+from hymeko_x.rewrite.inertia import LEAST
 from hymeko_x.source import PackageFiles, Source
 from tests.edits.kinds import KINDS, VALUES
 from tests.edits.test_copying import SUFFIXES
@@ -86,12 +87,24 @@ def unreported(image: Mechanism, edited: Mechanism, told: str) -> list[str]:
     aligned = align(image, edited)[1]
     rest = relevant(diff(aligned, edited, SINGLE), aligned, edited, SINGLE)
     named = [edit for edit in rest if edit.element.kind not in LISTED and edit.element != ROOT]
-    return [str(edit) for edit in named if edit.element.name.partition("/")[0] not in told and not _is_given_weight(edit)]
+    others = [edit for edit in named if not (_is_given_weight(edit) or _is_least_weight(edit) or _is_default_colour(edit))]
+    return [str(edit) for edit in others if edit.element.name.partition("/")[0] not in told]
 
 
 def _is_given_weight(edit: Difference) -> bool:
     """Whether a weight is given to a body, of which the edited file has it as that of a shape."""
     return edit.field in ("mass", "density") or (edit.field == "inertial" and edit.after == "none")
+
+
+def _is_least_weight(edit: Difference) -> bool:
+    """Whether a body has the mass that an engine demands in one of the files alone: what is fixed to it has one there."""
+    texts = (edit.before or "", edit.after or "")
+    return edit.field == "inertial" and "none" in texts and any(f"mass {LEAST!r}," in text for text in texts)
+
+
+def _is_default_colour(edit: Difference) -> bool:
+    """Whether a shape without a colour has that of MuJoCo's shapes without one, as where a class has another one."""
+    return (edit.field, edit.before, edit.after) == ("rgba", "[0.5 0.5 0.5 1]", "none")
 
 
 def changed_lines(found: Updated) -> int:

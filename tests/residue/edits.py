@@ -297,6 +297,8 @@ def _upper(layer: Any, value: float, place: int) -> str:
 
 def _heavier(layer: Any, value: float, place: int) -> str:
     body = _chosen(_bodies(layer), place)
+    if body is None:
+        return "nothing"
     body.properties["physics:mass"].default += value
     return str(body.name)
 
@@ -313,6 +315,8 @@ def _slide(layer: Any, value: float, place: int) -> str:
 
 def _add_prim(layer: Any, value: float, place: int) -> str:
     parent = _chosen(_bodies(layer), place)
+    if parent is None:
+        return "nothing"
     name = _free_name({prim.name for prim in _prims(layer, "Xform")})
     body = Sdf.PrimSpec(parent.nameParent, name, Sdf.SpecifierDef, "Xform")
     schemas = Sdf.TokenListOp()

@@ -82,6 +82,24 @@ def _pack_meshes(run: Packing) -> None:
             _pack_inline(run, key, mesh, users.get(key, []))
         else:
             _leave_out(run, key, users.get(key, []), codes.ASSET_NOT_FOUND, "it names no file")
+    _share_pieces(run)
+
+
+def _share_pieces(run: Packing) -> None:
+    """A piece of a file that is the same as another mesh is not declared beside it."""
+    known: dict[object, Id] = {}
+    same: dict[Id, Id] = {}
+    meshes = [(key, part) for key, part in run.vertices.items() if isinstance(part, Mesh)]
+    for key, part in sorted(meshes, key=lambda item: item[0] not in run.mechanism.graph.vertices):
+        first = known.setdefault((replace(part, name=None), run.attributes.get(key)), key)
+        if first != key and key not in run.mechanism.graph.vertices:
+            same[key] = first
+    for key in same:
+        del run.vertices[key]
+        run.attributes.pop(key, None)
+    for key, edge in run.edges.items() if same else ():
+        arcs = tuple([replace(arc, target=same.get(arc.target, arc.target)) for arc in edge.arcs])
+        run.edges[key] = replace(edge, arcs=arcs)
 
 
 def _pack_inline(run: Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
@@ -329,10 +347,18 @@ def _material(run: Packing, found: Appearance | None, mesh: Mesh) -> Id | None:
     if known is not None:
         return known
     new = Material(_meaning_of(found) or file_stem(mesh.uri or ""), found.rgba)
-    key = run.materials[found.rgba, found.image] = run.add_material(new, mark="_")
+    same = None if found.image is not None else _of_robot(run, new)
+    key = run.materials[found.rgba, found.image] = same or run.add_material(new, mark="_")
     if found.image is not None:
         run.add_texture(Texture(run.shelf.place(TEXTURES, key.name, ".png", png_bytes(found.image))), key)
     return key
+
+
+def _of_robot(run: Packing, new: Material) -> Id | None:
+    """The material of the robot itself that has this name and colour, and nothing else."""
+    key, graph = Id("material", new.name or ""), run.mechanism.graph
+    has_layers = any(found.edge.kind == "layer" for found in graph.incidence.get(key, ()))
+    return key if graph.vertices.get(key) == new and not has_layers else None
 
 
 def _meaning_of(found: Appearance) -> str:

@@ -20,7 +20,7 @@ from hymeko_x.rewrite.actuators import drop_foreign_actuators, drop_idle_actuato
 from hymeko_x.rewrite.couplings import drop_odd_tendons, make_couplings_scalar, make_tendons_sound, name_wrapped_shapes
 from hymeko_x.rewrite.differentials import drive_by_differentials
 from hymeko_x.rewrite.fragments import mount_sensors_of_fragments
-from hymeko_x.rewrite.inertia import fill_tensors, give_moving_bodies_mass, make_tensors_physical
+from hymeko_x.rewrite.inertia import fill_tensors, give_moving_bodies_mass, make_tensors_physical, welded_to
 from hymeko_x.rewrite.joints import (
     expand_screws,
     lower_inner_free_joints,
@@ -98,6 +98,16 @@ def _make_tensors_physical(mechanism: Mechanism, context: Context) -> Mechanism:
     return mechanism if compiler_has(mechanism, ("balanceinertia", "boundinertia")) else make_tensors_physical(mechanism, context)
 
 
+def _give_bare_bodies_mass(mechanism: Mechanism, context: Context) -> Mechanism:
+    """The least mass for moving bodies with nothing that weighs, as an edited file may add them: MuJoCo refuses these."""
+
+    def is_bare(body: Id) -> bool:
+        has_inertial = mechanism.vertex(body, Body).inertial is not None
+        return not (has_inertial or mechanism.shapes.get(body) or mechanism.extras.get(body))
+
+    return give_moving_bodies_mass(mechanism, context, lambda key: all(map(is_bare, welded_to(mechanism, key))))
+
+
 def _drop_empty_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
     """MuJoCo has geometries of its own: a height field, a distance function, a primitive fitted to a mesh."""
 
@@ -161,7 +171,7 @@ _REPLACED: Mapping[Rule, Rule | None] = MappingProxyType(
         mount_sensors_of_fragments: None,
         anchor_closures: None,
         name_dofs: None,
-        give_moving_bodies_mass: None,
+        give_moving_bodies_mass: _give_bare_bodies_mass,
         make_tensors_physical: _make_tensors_physical,
         drop_empty_shapes: _drop_empty_shapes,
         write_poses_as_keyframes: None,

@@ -1,0 +1,103 @@
+"""A mesh of several colours, which MJCF shows as one mesh for each: an edit of one of them arrives, and so does one of all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import pytest
+from lxml import etree
+
+import hymeko_x as hx
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+POINTS = "".join(f"v {x + shift} {y} {z}\n" for shift in (0, 3) for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)))
+FACES = "".join(
+    f"usemtl {name}\n"
+    + "".join(f"f {a} {b} {c}\n" for a, b, c in ((n, n + 2, n + 1), (n, n + 1, n + 3), (n, n + 3, n + 2), (n + 1, n + 2, n + 3)))
+    for n, name in ((1, "red"), (5, "blue"))
+)
+COLOURS = "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n"
+ARM = """<robot name="arm">
+  <link name="base">
+    <visual>
+      <geometry><mesh filename="pair.obj"/></geometry>
+    </visual>
+  </link>
+  <link name="hand">
+    <visual>
+      <geometry><mesh filename="pair.obj"/></geometry>
+    </visual>
+  </link>
+  <joint name="wrist" type="fixed">
+    <parent link="base"/>
+    <child link="hand"/>
+  </joint>
+</robot>
+"""
+PIECE = '<geom class="visual" type="mesh" mesh="pair_{}" material="{}"/>'
+RED, BLUE = (PIECE.format(name, name) for name in ("red", "blue"))
+UP = 'pos="0 0 1"'
+
+
+def raised(geom: str) -> str:
+    return geom.replace('type="mesh"', f'type="mesh" {UP}')
+
+
+def converted(folder: Path, keep: Literal["beside"] | None) -> tuple[Path, Path]:
+    """The arm, and the arm as MJCF."""
+    (folder / "there").mkdir()
+    original, there = folder / "arm.urdf", folder / "there/arm.xml"
+    original.write_text(ARM)
+    (folder / "pair.obj").write_text(f"mtllib pair.mtl\n{POINTS}{FACES}")
+    (folder / "pair.mtl").write_text(COLOURS)
+    hx.convert(original, there, keep=keep)
+    text = there.read_text()
+    assert (text.count(RED), text.count(BLUE)) == (2, 2)
+    return original, there
+
+
+def visuals(text: str, link: str) -> list[tuple[str, str]]:
+    """The place and the mesh of each visual of a link, in order of places."""
+    found = etree.fromstring(text.encode()).findall(f"link[@name='{link}']/visual")
+    places = [(visual.find("origin"), visual.find("geometry/mesh")) for visual in found]
+    return sorted(("" if origin is None else origin.get("xyz").replace("0 0 0", ""), mesh.get("filename")) for origin, mesh in places)
+
+
+WHOLE = [("", "pair.obj")]
+EDITS: list[tuple[str, Callable[[str], str], list[tuple[str, str]]]] = [
+    ("first", lambda text: text.replace(RED, raised(RED), 1), [("", "pair_blue.obj"), ("0 0 1", "pair_red.obj")]),
+    ("second", lambda text: text.replace(BLUE, raised(BLUE), 1), [("", "pair_red.obj"), ("0 0 1", "pair_blue.obj")]),
+    ("removed", lambda text: text.replace(BLUE, "", 1), [("", "pair_red.obj")]),
+    ("without the first", lambda text: text.replace(RED, "", 1), [("", "pair_blue.obj")]),
+    ("together", lambda text: text.replace(RED, raised(RED), 1).replace(BLUE, raised(BLUE), 1), [("0 0 1", "pair.obj")]),
+    ("all removed", lambda text: text.replace(RED, "", 1).replace(BLUE, "", 1), []),
+]
+
+
+@pytest.mark.parametrize(("edit", "expected"), [pytest.param(edit, expected, id=name) for name, edit, expected in EDITS])
+@pytest.mark.unread("HX101", "HX105", "HX202")
+def test_an_edit_of_one_colour_of_a_mesh_arrives(edit: Callable[[str], str], expected: list[tuple[str, str]], tmp_path: Path) -> None:
+    original, there = converted(tmp_path, None)
+    there.write_text(edit(there.read_text()))
+    report = hx.update(original, there).report
+    assert [row.message for row in report if row.code.id == "HX118"] == []
+    assert visuals(original.read_text(), "base") == expected
+    assert all((tmp_path / name).is_file() for _, name in visuals(original.read_text(), "hand"))
+    again = hx.update(original, there)
+    assert (again.edits, [row.message for row in again.report if row.code.id == "HX118"]) == ((), [])
+
+
+@pytest.mark.parametrize(("edit", "expected"), [pytest.param(edit, expected, id=name) for name, edit, expected in EDITS])
+@pytest.mark.unread("HX101", "HX105", "HX112", "HX202")
+def test_an_edit_of_one_colour_of_a_kept_mesh_comes_home(
+    edit: Callable[[str], str], expected: list[tuple[str, str]], tmp_path: Path
+) -> None:
+    _, there = converted(tmp_path, "beside")
+    there.write_text(edit(there.read_text()))
+    hx.convert(there, tmp_path / "home.urdf")
+    text = (tmp_path / "home.urdf").read_text()
+    assert [(place, Path(mesh).name) for place, mesh in visuals(text, "base")] == [(place, Path(mesh).name) for place, mesh in expected]
+    assert visuals(text, "hand") == WHOLE
