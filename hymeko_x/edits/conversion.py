@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from msgspec.structs import replace
 
 from hymeko_x import codes, disk, formats, pipeline, targets
+from hymeko_x.compare.contents import Contents
 from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import is_idle, relevant
@@ -23,6 +24,7 @@ from hymeko_x.edits.differences import (
     is_value_of_shape,
     is_without_inertial,
 )
+from hymeko_x.edits.paths import with_same_paths
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import (
     stem,
@@ -37,12 +39,13 @@ from hymeko_x.edits.weights import heavier, with_computed_gains, with_least_mass
 from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, Mechanism
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import Actuator, Body, Mesh, Shape, Texture
+from hymeko_x.ir.parts import Actuator, Body, Shape
 from hymeko_x.ir.values import numbers_text
 from hymeko_x.residue.align import align
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.landmarks import NAMED
 from hymeko_x.residue.merge import restore
+from hymeko_x.residue.originals import fetch_from
 from hymeko_x.residue.pairing import colour_of, other_names, reordered_shapes
 from hymeko_x.residue.realign import with_new_names, with_old_names
 from hymeko_x.source import PackageFiles
@@ -50,6 +53,7 @@ from hymeko_x.source import PackageFiles
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Set
 
+    from hymeko_x.compare.contents import Fetch
     from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import JointView
@@ -73,7 +77,8 @@ class Guess(NamedTuple):
     options: Options
     place: pipeline.Place
     image: Mechanism
-    distance: int
+    files: Files
+    distance: int = 0
 
 
 class Left(NamedTuple):
@@ -129,7 +134,7 @@ class Conversion:
         self._used = guess
         residue = residue_of(mechanism, guess.image)
         self._homes = homes = dict(residue.alignment.names)
-        self.edited, self.computed = self._comparable(guess.image)
+        self.edited, self.computed = self._comparable(guess.image, fetch_from(guess.files))
         if self._asked is None:
             self._asked = frozenset(map(aim, diff(guess.image, self.edited, TOLERANCE)))
         names = self._renames(guess.image)
@@ -139,15 +144,16 @@ class Conversion:
         named = with_new_names(restored, {new: old for new, old in own.items() if old != WORLD})
         return with_edited_poses(self._with_transmissions(named), guess.image, self.edited, self.format)
 
-    def _comparable(self, image: Mechanism) -> tuple[Mechanism, list[Id]]:
-        """EDITED with the classes, numbers and computed values of the image where no edit is of them; and the actuators that have such."""
+    def _comparable(self, image: Mechanism, fetch: Fetch) -> tuple[Mechanism, list[Id]]:
+        """EDITED with the image's classes, numbers, files and computed values where no edit is of them; and actuators with such values."""
         if self._first_image is None:
             self._first_image, self._first_original = image, self.mechanism
         read = with_made_classes(self._read, image, self._first_original, self.format)
         numbered = with_same_edges(
             with_same_numbers(read, image, self._unnamed_bodies()), image, self._in_image(unnamed_edges(self.mechanism))
         )
-        edited = without_counted_names(with_same_assets(numbered, image), image)
+        placed = with_same_paths(Contents(numbered, fetch_from(self.files)), Contents(image, fetch))
+        edited = without_counted_names(with_same_assets(placed, image), image)
         sources = {key: self.mechanism.graph.vertices.get(self._homes.get(key, key)) for key, _ in edited.vertices(Actuator)}
         return with_computed_gains(with_least_masses(edited, image), self._first_image, image, sources)
 
@@ -159,7 +165,7 @@ class Conversion:
 
     def _again(self, guess: Guess) -> Guess:
         """The same conversion of what the text is now."""
-        return guess._replace(image=self._converted(self.mechanism, guess.options, guess.place, self.source.files))
+        return self._converted(guess.options, guess.place)
 
     def _with_transmissions(self, robot: Mechanism) -> Mechanism:
         """The robot with its transmissions as they were: gains and ranges of the actuators that they become have no place in them."""
@@ -303,13 +309,14 @@ class Conversion:
         return self.edited.replace(vertices={key: complete.graph.vertices[key] for key in bare})
 
     def _guess(self, options: Options, place: pipeline.Place) -> Guess:
-        image = self._converted(self.mechanism, options, place, self.source.files)
-        return Guess(options, place, image, self._distance(image))
+        guess = self._converted(options, place)
+        return guess._replace(distance=self._distance(guess.image))
 
-    def _converted(self, mechanism: Mechanism, options: Options, place: pipeline.Place, files: Files) -> Mechanism:
-        """A mechanism as the format has it. Raises: as :func:`hymeko_x.pipeline.write`."""
-        package = pipeline.write(mechanism, self.format, options, files, Report(), place)
-        return pipeline.read_back(package, self.format, PackageFiles(package, files))
+    def _converted(self, options: Options, place: pipeline.Place) -> Guess:
+        """ORIGINAL as the format has it. Raises: as :func:`hymeko_x.pipeline.write`."""
+        package = pipeline.write(self.mechanism, self.format, options, self.source.files, Report(), place)
+        files = PackageFiles(package, self.source.files)
+        return Guess(options, place, pipeline.read_back(package, self.format, files), files)
 
     def _found_out(self, first: Guess) -> Guess:
         """The guess with the fewest differences, one option after the other; only those that may explain some are tried."""
@@ -391,11 +398,3 @@ class Names(NamedTuple):
 def _has_name(robot: Mechanism, key: Id) -> bool:
     """Whether the author of an element gave it a name."""
     return robot.notation(key, UNNAMED) is None
-
-
-def new_assets(before: Mechanism, after: Mechanism) -> Iterator[str]:
-    """The uris of meshes and images that only the edited mechanism refers to."""
-    known = {part.uri for _, part in before.assets()}
-    for _, part in after.assets():
-        if isinstance(part, Mesh | Texture) and part.uri and part.uri not in known:
-            yield part.uri

@@ -83,14 +83,23 @@ class PackagesBehind(Struct, frozen=True):
         return self.behind.match(pattern) if isinstance(self.behind, DiskFiles | PackagesBehind) else []
 
 
+def with_new_files(source: Source, beside: Mapping[str, bytes]) -> Source:
+    """The source with new files, by their paths beside it."""
+    folder = os.path.dirname(source.name)
+    return replace(source, files=EditedFiles(source.files, {os.path.join(folder, name): data for name, data in beside.items()}, folder))
+
+
 class EditedFiles(PackagesBehind, frozen=True):
     """Files of which some have another content; a :class:`hymeko_x.source.Files` that knows packages if those behind it do."""
 
     changed: Mapping[str, bytes]
+    folder: str = ""
+    """Where the files stand that are new."""
 
     def find(self, uri: str) -> str | None:
-        """The path of a file, or the uri of one that is new."""
-        return self.behind.find(uri) or (uri if uri in self.changed else None)
+        """The path of a file."""
+        path = os.path.join(self.folder, uri)
+        return self.behind.find(uri) or (path if path in self.changed else None)
 
     def read(self, path: str) -> bytes:
         """The content of a path that :meth:`find` returned. Raises: OSError."""

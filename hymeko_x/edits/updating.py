@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import posixpath
-from contextlib import suppress
 from difflib import unified_diff
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,12 +14,13 @@ from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import is_idle
 from hymeko_x.diagnostics import Origin, Refusal, Report, counted, listed, refuse
-from hymeko_x.edits.conversion import Conversion, new_assets
+from hymeko_x.edits.conversion import Conversion
 from hymeko_x.edits.differences import is_given_again, is_inherited, is_weight
-from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
+from hymeko_x.edits.paths import with_new_assets
+from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits, with_new_files
 from hymeko_x.edits.unnamed import unnamed_bodies, unnamed_edges, with_same_assets, with_same_edges, with_same_numbers
 from hymeko_x.ir.names import rename
-from hymeko_x.ir.parts import Body, Mesh, Shape, Texture
+from hymeko_x.ir.parts import Body, Shape
 from hymeko_x.memory import remembering
 from hymeko_x.residue.pairing import other_names
 from hymeko_x.rewrite import Options
@@ -36,7 +35,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import VertexPart
     from hymeko_x.source import Source
 
-_ASSETS = "meshes"
 _ASSET_KINDS = ("mesh", "material", "texture")
 """A texture is used by the materials that it is a layer of."""
 _MOST_MISSING = 10
@@ -114,7 +112,8 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
         if not found.texts.changed:
             break
         new, new_beside = {**changed, **found.texts.changed}, {**beside, **found.beside, **found.texts.beside}
-        source = replace(original, data=new.get(original.name, original.data), files=EditedFiles(original.files, {**new, **new_beside}))
+        edited_files = EditedFiles(original.files, new)
+        source = with_new_files(replace(original, data=new.get(original.name, original.data), files=edited_files), new_beside)
         try:
             later = _round(source, format, conversion, edited, Report())
         except Refusal as error:
@@ -137,8 +136,8 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
 def _round(original: Source, format: Format, conversion: Conversion, edited: Source, report: Report) -> _Round:
     """The edits that a text does not have yet, carried over to it."""
     before = pipeline.read(original, format, Report(), lenient=conversion.is_known)
-    after, beside = _with_new_assets(before, conversion.edited_mechanism(before, original), edited)
-    original = replace(original, files=EditedFiles(original.files, beside)) if beside else original
+    after, beside = with_new_assets(before, conversion.edited_mechanism(before, original), edited)
+    original = with_new_files(original, beside) if beside else original
     after = _without_unused(before, _with_imported_names(before, after, imported(original, format, before)))
     every = diff(before, after, TOLERANCE)
     after = _without_rounding(before, after, {edit.element for edit in every})
@@ -265,26 +264,3 @@ def _is_hidden_material(edit: Difference, after: Mechanism) -> bool:
 
 def _has_own_colour(edge: RobotEdge | None) -> bool:
     return edge is not None and isinstance(edge.data, Shape) and edge.data.rgba is not None
-
-
-def _with_new_assets(before: Mechanism, after: Mechanism, edited: Source) -> tuple[Mechanism, dict[str, bytes]]:
-    """The mechanism with the paths that files get beside the original which only the edited robot has, and their contents."""
-    folder = next((posixpath.dirname(part.uri) for _, part in before.vertices(Mesh) if part.uri and _is_below(part.uri)), _ASSETS)
-    names: dict[str, str] = {}
-    contents: dict[str, bytes] = {}
-    for uri in new_assets(before, after):
-        path = edited.files.find(uri) if _is_below(uri) else None
-        with suppress(OSError):
-            if path is not None:
-                names[uri] = posixpath.join(folder, posixpath.basename(uri))
-                contents[names[uri]] = edited.files.read(path)
-    changed: dict[Id, VertexPart] = {}
-    for key, part in after.assets():
-        if isinstance(part, Mesh | Texture) and part.uri in names:
-            changed[key] = replace(part, uri=names[part.uri])
-    return after.replace(vertices=changed), contents
-
-
-def _is_below(uri: str) -> bool:
-    """Whether a uri is a relative path that stays below its folder."""
-    return "://" not in uri and not os.path.isabs(uri) and ".." not in uri.split("/")

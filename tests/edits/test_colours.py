@@ -46,14 +46,14 @@ def raised(geom: str) -> str:
     return geom.replace('type="mesh"', f'type="mesh" {UP}')
 
 
-def converted(folder: Path, keep: Literal["beside"] | None) -> tuple[Path, Path]:
+def converted(folder: Path, keep: Literal["beside"] | None = None, assets: Literal["copy", "reference"] | None = None) -> tuple[Path, Path]:
     """The arm, and the arm as MJCF."""
     (folder / "there").mkdir()
     original, there = folder / "arm.urdf", folder / "there/arm.xml"
     original.write_text(ARM)
     (folder / "pair.obj").write_text(f"mtllib pair.mtl\n{POINTS}{FACES}")
     (folder / "pair.mtl").write_text(COLOURS)
-    hx.convert(original, there, keep=keep)
+    hx.convert(original, there, keep=keep, assets=assets)
     text = there.read_text()
     assert (text.count(RED), text.count(BLUE)) == (2, 2)
     return original, there
@@ -78,9 +78,12 @@ EDITS: list[tuple[str, Callable[[str], str], list[tuple[str, str]]]] = [
 
 
 @pytest.mark.parametrize(("edit", "expected"), [pytest.param(edit, expected, id=name) for name, edit, expected in EDITS])
+@pytest.mark.parametrize("assets", [None, "reference"])
 @pytest.mark.unread("HX101", "HX105", "HX202")
-def test_an_edit_of_one_colour_of_a_mesh_arrives(edit: Callable[[str], str], expected: list[tuple[str, str]], tmp_path: Path) -> None:
-    original, there = converted(tmp_path, None)
+def test_an_edit_of_one_colour_of_a_mesh_arrives(
+    edit: Callable[[str], str], expected: list[tuple[str, str]], assets: Literal["reference"] | None, tmp_path: Path
+) -> None:
+    original, there = converted(tmp_path, assets=assets)
     there.write_text(edit(there.read_text()))
     report = hx.update(original, there).report
     assert [row.message for row in report if row.code.id == "HX118"] == []
@@ -95,7 +98,7 @@ def test_an_edit_of_one_colour_of_a_mesh_arrives(edit: Callable[[str], str], exp
 def test_an_edit_of_one_colour_of_a_kept_mesh_comes_home(
     edit: Callable[[str], str], expected: list[tuple[str, str]], tmp_path: Path
 ) -> None:
-    _, there = converted(tmp_path, "beside")
+    _, there = converted(tmp_path, keep="beside")
     there.write_text(edit(there.read_text()))
     hx.convert(there, tmp_path / "home.urdf")
     text = (tmp_path / "home.urdf").read_text()

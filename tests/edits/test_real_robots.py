@@ -16,7 +16,7 @@ from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.compare.relevance import relevant
 from hymeko_x.corpus.catalog import development_files
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.edits.text import EditedFiles
+from hymeko_x.edits.text import EditedFiles, with_new_files
 from hymeko_x.edits.updating import update
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.residue.align import align
@@ -66,7 +66,7 @@ class Converted(NamedTuple):
     def with_edits(self, found: Updated) -> Source:
         """The original with its edits."""
         data = found.changed.get(self.source.name, self.source.data)
-        return replace(self.source, data=data, files=EditedFiles(self.source.files, {**found.changed, **found.beside}))
+        return with_new_files(replace(self.source, data=data, files=EditedFiles(self.source.files, found.changed)), found.beside)
 
 
 def converted(robot: Path, target: str) -> Converted:
