@@ -1,8 +1,9 @@
-"""What an editor does to a file, by the file's format: edits of SDF texts, and moves to another parent, beside the edits of all laws."""
+"""What an editor does to a file, by its format: edits of SDF and HyMeKo texts, and moves to another parent, beside those of all laws."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from lxml import etree
@@ -86,6 +87,55 @@ def _rename(root: Any, value: float, place: int) -> str:
 
 _SDF: Kinds = {"limit": _limit, "mass": _mass, "move": _move, "add": _add, "remove": _remove, "rename link": _rename}
 
+# ---- HyMeKo ------------------------------------------------------------------------------------------------------------------
+
+_NUMBER = r"-?[0-9][-+0-9.e]*"
+_MASS = re.compile(rf"\bmass ({_NUMBER})")
+_UPPER = re.compile(rf"\blimit \[{_NUMBER} ({_NUMBER})\]")
+_PLACE = re.compile(rf"\bat \[({_NUMBER}) {_NUMBER} {_NUMBER}\]")
+_CHILD = re.compile(r"^  @\w+ .*?\{ .*?\+ (\w+)", re.MULTILINE)
+
+
+def applied_to_text(text: str, edits: Sequence[Callable[[Any], str]]) -> tuple[str, list[str]]:
+    """The text after the edits, which change the only item of a list, and what they did."""
+    held = [text]
+    done = [edit(held) for edit in edits]
+    return held[0], done
+
+
+def _with_number(held: list[str], pattern: re.Pattern[str], place: int, change: Callable[[float], float]) -> str:
+    """Change one of the numbers that a pattern finds."""
+    text = held[0]
+    found = _chosen([*pattern.finditer(text)], place)
+    if found is None:
+        return "nothing"
+    held[0] = f"{text[: found.start(1)]}{change(float(found[1]))!r}{text[found.end(1) :]}"
+    return str(found[0])
+
+
+def _mass_in_text(held: list[str], value: float, place: int) -> str:
+    return _with_number(held, _MASS, place, lambda old: value if old > 1e-3 else old + value)
+
+
+def _upper_in_text(held: list[str], value: float, place: int) -> str:
+    return _with_number(held, _UPPER, place, lambda old: round(old + value, 6))
+
+
+def _place_in_text(held: list[str], value: float, place: int) -> str:
+    return _with_number(held, _PLACE, place, lambda old: round(old + value, 6))
+
+
+def _add_to_text(held: list[str], value: float, place: int) -> str:
+    parent = _chosen([found[1] for found in _CHILD.finditer(held[0])], place)
+    if parent is None or not held[0].rstrip().endswith("\n}"):
+        return "nothing"
+    link = f"  tool {{ mass {value} inertia [0.01 0.01 0.01] collision {{ box [0.1 0.2 {value}] }} }}\n"
+    held[0] = f"{held[0].rstrip()[:-1]}{link}  @tool_mount : fixed {{ [0 {value} 0] + {parent} }}\n}}\n"
+    return f"tool on {parent}"
+
+
+_HYMEKO: Kinds = {"mass": _mass_in_text, "limit": _upper_in_text, "move": _place_in_text, "add": _add_to_text}
+
 # ---- to another parent -----------------------------------------------------------------------------------------------------
 
 
@@ -113,6 +163,12 @@ KINDS: dict[str, Kinds] = {
     "mjcf": {**edits._MJCF, "reparent": _reparent_body},
     "usd": edits._USD,
     "sdf": _SDF,
+    "xacro": edits._XACRO,
+    "hymeko": _HYMEKO,
 }
+APPLIED: dict[str, Callable[..., tuple[str, list[str]]]] = {"usd": edits.applied_to_stage, "hymeko": applied_to_text}
+"""How a text is edited that is no XML."""
 VALUES = ("mass", "weigh", "limit", "range", "place")
-"""Edits of one value, which change one line."""
+"""Edits of one value, which change one line, unless it stands in a class or a macro."""
+SHARING = ("hymeko", "xacro")
+"""The formats whose texts are factored into classes and macros."""

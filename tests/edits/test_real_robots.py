@@ -23,9 +23,9 @@ from hymeko_x.residue.align import align
 from hymeko_x.rewrite import Options
 from hymeko_x.rewrite.inertia import LEAST
 from hymeko_x.source import PackageFiles, Source
-from tests.edits.kinds import KINDS, VALUES
+from tests.edits.kinds import APPLIED, KINDS, SHARING, VALUES
 from tests.edits.test_copying import SUFFIXES
-from tests.residue.edits import applied, applied_to_stage
+from tests.residue.edits import applied
 
 if TYPE_CHECKING:
     from hymeko_x.compare.diff import Difference
@@ -140,10 +140,9 @@ def judge(path: Path, target: str, number: int) -> None:
     chance, few = random.Random(path.name), list[int]()
     for kind in itertools.islice(itertools.cycle(sorted(KINDS[target])), number):
         value, place = round(chance.uniform(0.001, 2.0), 4), chance.randrange(1000)
-        changed = applied_to_stage if target == "usd" else applied
-        text, (what,) = changed(robot.package.main.decode(), [partial(KINDS[target][kind], value=value, place=place)])
+        text, (what,) = APPLIED.get(target, applied)(robot.package.main.decode(), [partial(KINDS[target][kind], value=value, place=place)])
         lines = None if what == "nothing" else judged(robot, f"{kind}: {what}", robot.edited(text))
-        if lines is not None and kind in VALUES:
+        if lines is not None and kind in VALUES and target not in SHARING:
             few.append(lines)
     assert sorted(few)[len(few) // 2 :][:1] in ([], [0], [1])
 

@@ -91,7 +91,10 @@ def _place(root: Any, value: float, place: int) -> str:
 
 
 def _add(root: Any, value: float, place: int) -> str:
-    parent = _chosen(root.findall("link"), place).get("name")
+    link = _chosen(root.findall("link"), place)
+    if link is None:
+        return "nothing"
+    parent = link.get("name")
     name = _free_name({link.get("name") for link in root.iter("link")})
     link = etree.SubElement(root, "link", name=name)
     inertial = etree.SubElement(link, "inertial")
