@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x.ir.graph import Edge
-from hymeko_x.ir.mechanism import pose_weight
+from hymeko_x.ir.mechanism import Id, pose_weight
 from hymeko_x.ir.names import Names
 from hymeko_x.ir.parts import Mesh, MeshShape, Shape
 from hymeko_x.residue.alike import is_alike
@@ -18,45 +18,65 @@ from hymeko_x.residue.parts import row_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
     from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.ir.values import Pose
     from hymeko_x.residue import Change, Element, Residue
 
 
-def pieces_of_meshes(residue: Residue) -> dict[Id, list[Element]]:
-    """The other pieces of each shape whose mesh the image has in several: each shows a mesh and a material that only the image has."""
+def pieces_of_meshes(image: Mechanism, residue: Residue) -> dict[Id, list[Element]]:
+    """The other pieces of each shape whose mesh the image has in several: they show meshes that only the image has.
+
+    Pieces of two meshes on one body, in one place, are taken for pieces of both.
+    """
     only_there = {removal.id for removal in residue.removals}
     waiting: dict[str, list[Element]] = defaultdict(list)
     for removal in residue.removals:
-        if isinstance(removal.part, Edge) and _is_piece(removal.part) and {arc.target for arc in removal.part.arcs[1:]} <= only_there:
+        if isinstance(removal.part, Edge) and _mesh_of(removal.part) in only_there:
             waiting[row_of(removal.id)].append(removal)
+    if not waiting:
+        return {}
+    changed = {change.element for change in residue.changes}
+    firsts = [key for key, edge in image.graph.edges.items() if key.kind == "shape" and _mesh_of(edge) in changed]
+    gone = [key for key in changed if key.kind == "shape" and key not in image.graph.edges]
+    places = {change.element: pose_weight(change.there[0]) for change in residue.changes if _is_of_arcs(change)}  # type: ignore[index]
     found: dict[Id, list[Element]] = {}
-    for change in residue.changes if waiting else ():
-        pieces = waiting.get(row_of(change.element))
-        if pieces and _gains_material(change, only_there):
-            place = pose_weight(change.there[0])  # type: ignore[index]
-            found[change.element] = [piece for piece in pieces if is_alike(pose_weight(piece.part.arcs[0]), place)]  # type: ignore[union-attr]
+    for key in (*firsts, *gone):
+        pieces = [piece for piece in waiting.get(row_of(key), ()) if key not in only_there]
+        found[key] = [piece for piece in pieces if key not in places or is_alike(_pose_of(piece), places[key])]
     return {key: pieces for key, pieces in found.items() if pieces}
 
 
-def _is_piece(edge: RobotEdge) -> bool:
-    """Whether an edge is the shape of a mesh in a material."""
+def _mesh_of(edge: RobotEdge) -> Id | None:
+    """The mesh that an edge shows, if it is a shape."""
     is_mesh = isinstance(edge.data, Shape) and isinstance(edge.data.geometry, MeshShape)
-    return is_mesh and {arc.role for arc in edge.arcs[1:]} == {"mesh", "material"}
+    return next((arc.target for arc in edge.arcs if arc.role == "mesh"), None) if is_mesh else None
 
 
-def _gains_material(change: Change, only_there: set[Id]) -> bool:
-    """Whether a change is that of a shape which has a mesh in the source, and a material that only the image has."""
-    if change.path != ARCS or not isinstance(change.there, tuple) or not isinstance(change.value, tuple):
-        return False
-    is_mesh = any(arc.role == "mesh" for arc in change.value) and not any(arc.role == "material" for arc in change.value)
-    return is_mesh and any(arc.role == "material" and arc.target in only_there for arc in change.there)
+def _pose_of(piece: Element) -> Pose:
+    assert isinstance(piece.part, Edge)
+    return pose_weight(piece.part.arcs[0])
+
+
+def _is_of_arcs(change: Change) -> bool:
+    return change.path == ARCS and isinstance(change.there, tuple)
+
+
+def _materials_there(residue: Residue) -> dict[Id, Id]:
+    """The materials that shapes have in the image, where that is another one than in the source."""
+    found: dict[Id, Id] = {}
+    for change in residue.changes:
+        if change.element.kind == "shape" and change.path[:1] == ARCS:
+            ends = [arc.target for arc in change.there] if _is_of_arcs(change) else [change.there]  # type: ignore[attr-defined]
+            for end in ends:
+                if isinstance(end, Id) and end.kind == "material":
+                    found[change.element] = end
+    return found
 
 
 def taken_apart(image: Mechanism, residue: Residue, pieces: Mapping[Id, Sequence[Element]]) -> set[Id]:
     """The shapes of which a piece was edited, moved, coloured or removed by itself in the image."""
-    then = {change.element: change.there for change in residue.changes if change.path == ARCS and change.element in pieces}
-    assets = {removal.id: removal.part for removal in residue.removals}
+    assets, materials = {removal.id: removal.part for removal in residue.removals}, _materials_there(residue)
     apart: set[Id] = set()
     for key, others in pieces.items():
         first, now = image.graph.edges.get(key), [image.graph.edges.get(other.id) for other in others]
@@ -64,21 +84,23 @@ def taken_apart(image: Mechanism, residue: Residue, pieces: Mapping[Id, Sequence
         if first is None:
             is_whole = not parts
         else:
-            olds = [then[key], *(other.part.arcs for other in others if isinstance(other.part, Edge))]
+            olds = [{materials[key]} if key in materials else set()]
+            olds += [{arc.target for arc in other.part.arcs} for other in others if isinstance(other.part, Edge)]
             is_whole = len(parts) == len(olds) and all(_shows(image, *pair, first, assets) for pair in zip(parts, olds, strict=True))
         apart |= set() if is_whole else {key}
     return apart
 
 
-def _shows(image: Mechanism, piece: RobotEdge, then: object, first: RobotEdge, assets: Mapping[Id, object]) -> bool:
-    """Whether a piece is where the first one is, on the body and of the mesh that it had, in a material that looks like it did."""
-    assert isinstance(then, tuple)
+def _shows(image: Mechanism, piece: RobotEdge, olds: set[Id], first: RobotEdge, assets: Mapping[Id, object]) -> bool:
+    """Whether a piece is where the first one is, and what it has is what it had, or looks like that; ``olds`` are those that are known."""
     if not is_alike(piece.data, first.data) or not is_alike(pose_weight(piece.arcs[0]), pose_weight(first.arcs[0])):
         return False
-    pairs = [(arc.target, old.target) for arc, old in zip(piece.arcs, then, strict=False)]
-    return len(piece.arcs) == len(then) and all(
-        now == old or is_alike(image.graph.vertices.get(now), assets.get(old)) for now, old in pairs
-    )
+    targets = [arc.target for arc in piece.arcs]
+    return all(old in targets or any(_is_same(image, key, old, assets) for key in targets) for old in olds)
+
+
+def _is_same(image: Mechanism, now: Id, old: Id, assets: Mapping[Id, object]) -> bool:
+    return now.kind == old.kind and is_alike(image.graph.vertices.get(now), assets.get(old))
 
 
 def with_first_pieces(

@@ -14,7 +14,7 @@ from hymeko_x import codes, formats
 from hymeko_x.compare.leaves import TURN, default_at, get, put
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Shape, Texture
+from hymeko_x.ir.parts import Body, Drive, Layer, Mesh, Mount, Plane, Sense, Shape, Texture
 from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.alike import URI, holds, is_alike, is_moved, without_surface
 from hymeko_x.residue.arcs import ARCS, with_edited_weights, with_own_ends, without_lost_material
@@ -86,6 +86,8 @@ class _Merge:
     """Those among them that are meshes of several colours."""
     _moved: dict[Id, RobotArc] = field(init=False)
     """The arcs to their parents of balls that were moved."""
+    _layers: dict[Id, list[Id]] = field(init=False)
+    """The layers that only the image has, by their materials and images."""
     _shapes_then: dict[Id, list[Element]] = field(init=False)
     """The shapes that bodies had in the image, of those that the residue tells of."""
 
@@ -96,7 +98,7 @@ class _Merge:
         for element in (*self.residue.removals, *self.residue.weights):
             if element.id.kind == "shape" and isinstance(element.part, Edge):
                 self._shapes_then[_body_of(element.part)].append(element)
-        capsules, meshes, balls = parts_of(self.residue), pieces_of_meshes(self.residue), hinges_of_balls(self.residue)
+        capsules, meshes, balls = parts_of(self.residue), pieces_of_meshes(self.image, self.residue), hinges_of_balls(self.residue)
         self._apart = taken_apart(self.image, self.residue, meshes)
         self._moved, hinges = moved_and_apart(self.image, balls)
         self._parts = capsules | meshes | balls
@@ -257,6 +259,10 @@ class _Merge:
     def _let_nothing_dangle(self, removed: dict[Id, VertexPart | RobotEdge]) -> None:
         """Keep what something new is on, and drop what was on something that is gone."""
         added = {key for key, _ in self.residue.additions}
+        self._layers = defaultdict(list)
+        for key, part in removed.items():
+            for arc in part.arcs if isinstance(part, Edge) and isinstance(part.data, Layer) else ():
+                self._layers[arc.target].append(key)
         users: dict[Id, list[Id]] = defaultdict(list)
         for key, edge in self.edges.items():
             for arc in edge.arcs:
@@ -267,7 +273,7 @@ class _Merge:
             if target in self.vertices or target in self.edges:
                 continue
             if target in removed and any(key not in added and key in self.edges for key in users[target]):
-                queue += self._put_back(target, removed[target], users)
+                queue += self._put_back(target, removed, users)
                 continue
             for key in users[target]:
                 if key in self.edges:
@@ -283,10 +289,13 @@ class _Merge:
             del self.vertices[thing]
         return things
 
-    def _put_back(self, key: Id, part: VertexPart | RobotEdge, users: dict[Id, list[Id]]) -> list[Id]:
+    def _put_back(self, key: Id, removed: dict[Id, VertexPart | RobotEdge], users: dict[Id, list[Id]]) -> list[Id]:
+        """Keep something, and what it is on: a material with its images."""
+        part = removed[key]
         if not isinstance(part, Edge):
             self.vertices[key] = part
-            return []
+            layers = [layer for layer in self._layers[key] if layer in removed and layer not in self.edges]
+            return [target for layer in layers for target in self._put_back(layer, removed, users)]
         self.edges[key] = part
         for arc in part.arcs:
             users[arc.target].append(key)

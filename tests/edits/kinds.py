@@ -130,7 +130,7 @@ def _add_to_text(held: list[str], value: float, place: int) -> str:
     if parent is None or not held[0].rstrip().endswith("\n}"):
         return "nothing"
     link = f"  tool {{ mass {value} inertia [0.01 0.01 0.01] collision {{ box [0.1 0.2 {value}] }} }}\n"
-    held[0] = f"{held[0].rstrip()[:-1]}{link}  @tool_mount : fixed {{ [0 {value} 0] + {parent} }}\n}}\n"
+    held[0] = f"{held[0].rstrip()[:-1]}{link}  @tool_mount : fixed {{ [0 {value} 0] + {parent} - tool }}\n}}\n"
     return f"tool on {parent}"
 
 

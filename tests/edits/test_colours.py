@@ -46,13 +46,18 @@ def raised(geom: str) -> str:
     return geom.replace('type="mesh"', f'type="mesh" {UP}')
 
 
+def written_pair(folder: Path) -> None:
+    """A mesh in two colours."""
+    (folder / "pair.obj").write_text(f"mtllib pair.mtl\n{POINTS}{FACES}")
+    (folder / "pair.mtl").write_text(COLOURS)
+
+
 def converted(folder: Path, keep: Literal["beside"] | None = None, assets: Literal["copy", "reference"] | None = None) -> tuple[Path, Path]:
     """The arm, and the arm as MJCF."""
     (folder / "there").mkdir()
     original, there = folder / "arm.urdf", folder / "there/arm.xml"
     original.write_text(ARM)
-    (folder / "pair.obj").write_text(f"mtllib pair.mtl\n{POINTS}{FACES}")
-    (folder / "pair.mtl").write_text(COLOURS)
+    written_pair(folder)
     hx.convert(original, there, keep=keep, assets=assets)
     text = there.read_text()
     assert (text.count(RED), text.count(BLUE)) == (2, 2)
@@ -91,6 +96,27 @@ def test_an_edit_of_one_colour_of_a_mesh_arrives(
     assert all((tmp_path / name).is_file() for _, name in visuals(original.read_text(), "hand"))
     again = hx.update(original, there)
     assert (again.edits, [row.message for row in again.report if row.code.id == "HX118"]) == ((), [])
+
+
+PAINT = '<material name="paint"><color rgba="0 0 1 1"/></material>'
+
+
+@pytest.mark.parametrize("number", [1, 4])
+@pytest.mark.unread("HX101", "HX105", "HX202")
+def test_pieces_in_the_colour_of_a_material_of_the_robot_are_pieces(number: int, tmp_path: Path) -> None:
+    """The blue piece has that material, which is not declared twice."""
+    (tmp_path / "there").mkdir()
+    original, there = tmp_path / "arm.urdf", tmp_path / "there/arm.xml"
+    original.write_text(ARM.replace("    </visual>", f"      {PAINT}\n    </visual>"))
+    written_pair(tmp_path)
+    hx.convert(original, there)
+    text, blue = there.read_text(), PIECE.format("blue", "paint")
+    assert (text.count(RED), text.count(blue), text.count("<material ")) == (2, 2, 2)
+    _, edit, expected = EDITS[number]
+    there.write_text(edit(text.replace(blue, BLUE)).replace('material="blue"', 'material="paint"'))
+    hx.update(original, there)
+    assert visuals(original.read_text(), "base") == expected
+    assert hx.update(original, there).edits == ()
 
 
 @pytest.mark.parametrize(("edit", "expected"), [pytest.param(edit, expected, id=name) for name, edit, expected in EDITS])

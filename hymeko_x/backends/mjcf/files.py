@@ -11,23 +11,23 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.assets.companions import companion_reader
 from hymeko_x.assets.shelf import Shelf, read_file
+from hymeko_x.backends.mjcf.appearances import looks_of_robot, material_of, meaning_of
 from hymeko_x.backends.mjcf.mesh_names import name_meshes
 from hymeko_x.backends.mjcf.packing import Packing, warn
-from hymeko_x.backends.mjcf.textures import TEXTURES, pack_textures
+from hymeko_x.backends.mjcf.textures import pack_textures
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
 from hymeko_x.formats.mjcf.files import refused
 from hymeko_x.formats.mjcf.words import from_mjcf
 from hymeko_x.ir.mechanism import Extra, Id, shape_edge
 from hymeko_x.ir.names import names_in_use
-from hymeko_x.ir.parts import Material, Mesh, Role, Texture
+from hymeko_x.ir.parts import Mesh, Role
 from hymeko_x.memory import remembered
-from hymeko_x.meshes.images import png_bytes
 from hymeko_x.source import file_stem, suffix_of
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Code, Report
     from hymeko_x.ir.mechanism import Mechanism, ShapeView
-    from hymeko_x.meshes.submesh import Appearance, Submesh
+    from hymeko_x.meshes.submesh import Submesh
     from hymeko_x.source import Files
 
 _MESHES = "meshes"
@@ -63,6 +63,7 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
     if not any(mechanism.assets()):
         return mechanism
     run = Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
+    run.looks = looks_of_robot(run)
     pack_textures(run)
     _pack_meshes(run)
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), extra) for key, extra in run.attributes.items()}}
@@ -185,7 +186,7 @@ def _pack_appearances(run: Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, .
         _report_converted(run, key, f"has {len(parts)} appearances; each one becomes a mesh of its own")
         return [_own_mesh(run, mesh, part) for part in _with_surface(run, key, parts)]
     part = parts[0]
-    material = _material(run, part.appearance, mesh)
+    material = material_of(run, part.appearance, mesh)
     is_altered = _is_flat(part) or len(part.points) < _FEWEST_POINTS  # then the mesh for contact is not also the one to show
     if hull == key and not is_altered:
         return [_Piece(key, material)]
@@ -196,11 +197,11 @@ def _pack_appearances(run: Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, .
 
 def _own_mesh(run: Packing, mesh: Mesh, part: Submesh) -> _Piece:
     """A part of a file as a mesh of its own."""
-    meaning = "" if part.appearance is None else _meaning_of(part.appearance)
+    meaning = "" if part.appearance is None else meaning_of(part.appearance)
     name = "_".join(filter(None, (file_stem(mesh.uri or ""), meaning)))
     key = run.names.take("mesh", name)
     _write_mesh(run, key, mesh, part, name, solid=False)
-    return _Piece(key, _material(run, part.appearance, mesh))
+    return _Piece(key, material_of(run, part.appearance, mesh))
 
 
 def _pack_hull(run: Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], file: _File) -> Id:
@@ -334,38 +335,6 @@ def _is_sheet(part: Submesh, mesh: Mesh) -> bool:
 
     x, y, z = mesh.scale
     return volume_of_sheets(part) * abs(x * y * z) < _LEAST_VOLUME
-
-
-# ---- appearances ----------------------------------------------------------------------------------------------------------------------
-
-
-def _material(run: Packing, found: Appearance | None, mesh: Mesh) -> Id | None:
-    """The material of an appearance in a file; equal ones share it."""
-    if found is None or (found.rgba is None and found.image is None):
-        return None
-    known = run.materials.get((found.rgba, found.image))
-    if known is not None:
-        return known
-    new = Material(_meaning_of(found) or file_stem(mesh.uri or ""), found.rgba)
-    same = None if found.image is not None else _of_robot(run, new)
-    key = run.materials[found.rgba, found.image] = same or run.add_material(new, mark="_")
-    if found.image is not None:
-        run.add_texture(Texture(run.shelf.place(TEXTURES, key.name, ".png", png_bytes(found.image))), key)
-    return key
-
-
-def _of_robot(run: Packing, new: Material) -> Id | None:
-    """The material of the robot itself that has this name and colour, and nothing else."""
-    key, graph = Id("material", new.name or ""), run.mechanism.graph
-    has_layers = any(found.edge.kind == "layer" for found in graph.incidence.get(key, ()))
-    return key if graph.vertices.get(key) == new and not has_layers else None
-
-
-def _meaning_of(found: Appearance) -> str:
-    """The name of an appearance, else that of its image or colour; empty where it has none of them."""
-    from hymeko_x.meshes.colours import name_of_colour
-
-    return found.name or file_stem(found.file) or ("" if found.rgba is None else name_of_colour(found.rgba))
 
 
 # ---- diagnostics -----------------------------------------------------------------------------------------------------------------------

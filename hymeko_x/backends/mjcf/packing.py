@@ -18,7 +18,11 @@ if TYPE_CHECKING:
 
 
 class Packing(Builder, kw_only=True):
-    """One run: what it reads from, and what it adds to the mechanism; ``attributes`` are those of meshes and textures in MJCF."""
+    """One run: what it reads from, and what it adds to the mechanism.
+
+    ``attributes`` are those of meshes and textures in MJCF, ``materials`` those of appearances in files, by colour and image, and ``looks``
+    the robot's own by colour and PNG.
+    """
 
     mechanism: Mechanism
     shelf: Shelf
@@ -27,6 +31,7 @@ class Packing(Builder, kw_only=True):
     gone: list[Id] = field(default_factory=list)
     attributes: dict[Id, Extra] = field(default_factory=dict)
     materials: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
+    looks: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
 
 
 def warn(run: Packing, key: Id, code: Code, message: str, uri: str | None = None) -> None:
