@@ -104,9 +104,9 @@ def applied_to_text(text: str, edits: Sequence[Callable[[Any], str]]) -> tuple[s
 
 
 def _with_number(held: list[str], pattern: re.Pattern[str], place: int, change: Callable[[float], float]) -> str:
-    """Change one of the numbers that a pattern finds."""
+    """Change one of the numbers that a pattern finds, which stand for no bound where they are huge."""
     text = held[0]
-    found = _chosen([*pattern.finditer(text)], place)
+    found = _chosen([found for found in pattern.finditer(text) if abs(float(found[1])) < 1e3], place)
     if found is None:
         return "nothing"
     held[0] = f"{text[: found.start(1)]}{change(float(found[1]))!r}{text[found.end(1) :]}"
