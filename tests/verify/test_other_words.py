@@ -137,6 +137,28 @@ def test_sensors_that_mjcf_does_not_have_are_a_gap_and_an_imu_is_two(written: Wr
     assert [check.quantity for check in hx.verify(written("hymeko", SENSED), less).failed] == ["sensors"]
 
 
+TOUCHED = """<mujoco><worldbody><geom type="plane" size="1 1 1"/><body name="b"><freejoint/><geom size="0.1"/></body></worldbody>
+<sensor><contact name="c" body1="b"/></sensor></mujoco>"""
+BUMPER = """<sdf version="1.9"><model name="m"><link name="b"><inertial><mass>1</mass></inertial>
+<collision name="c"><geometry><sphere><radius>0.1</radius></sphere></geometry></collision>
+<sensor name="bump" type="contact"><contact><collision>c</collision></contact></sensor></link></model></sdf>"""
+
+
+def test_a_contact_sensor_of_sdf_is_none_of_mujoco(written: Write, tmp_path: Path) -> None:
+    """MuJoCo's names the elements between which it reports contacts, and is compared."""
+    (tmp_path / "bump.sdf").write_text(BUMPER)
+    hx.convert(tmp_path / "bump.sdf", tmp_path / "bump.hymeko")
+    hx.convert(tmp_path / "bump.hymeko", tmp_path / "bump.xml")
+    verdict = hx.verify(tmp_path / "bump.hymeko", tmp_path / "bump.xml")
+    assert (verdict.is_same, [(gap.quantity, gap.names) for gap in verdict.gaps]) == (True, [("sensors", ("'bump'",))])
+    source = written("mjcf", TOUCHED)
+    hx.convert(source, tmp_path / "touch.hymeko")
+    assert hx.verify(tmp_path / "touch.hymeko", source).is_same
+    less = tmp_path / "less.xml"
+    less.write_text(TOUCHED.replace('<contact name="c" body1="b"/>', ""))
+    assert [check.quantity for check in hx.verify(tmp_path / "touch.hymeko", less).failed] == ["sensors"]
+
+
 SCREW = f"{LOOPED[:-1]}{SCREWED}"
 
 

@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 
 FEATURES = frozenset(Feature) - {Feature.TIED_TENDONS}
 
+_CONTACT, _CONTACTS = "contact", "contacts"
+"""The kind of a sensor of contacts, and what it is called where it does not name what touches."""
 _TRANSMISSION = "transmission"
 """The kind of the actuators whose law depends on the program that commands them."""
 
@@ -108,8 +110,11 @@ def _actuators(mechanism: Mechanism) -> Iterator[m.Record]:
 
 
 def _sensors(mechanism: Mechanism) -> Iterator[m.Record]:
+    """The sensors; SDF's contact sensor reports all contacts of a link, MuJoCo's those between elements that it names by their roles."""
     keys = {key: sensor.kind for key, sensor in mechanism.vertices(parts.Sensor)}
-    yield from (replace(record, kind=kind) for record, kind in zip(_records(mechanism, keys), keys.values(), strict=True))
+    of_mujoco = {arc.target for _, _, arcs in mechanism.edges(parts.Sense) if any(arc.role for arc in arcs) for arc in arcs}
+    for key, record in zip(keys, _records(mechanism, keys), strict=True):
+        yield replace(record, kind=_CONTACTS if keys[key] == _CONTACT and key not in of_mujoco else keys[key])
 
 
 def _records(mechanism: Mechanism, keys: Iterable[Id]) -> Iterator[m.Record]:
