@@ -25,6 +25,8 @@ _FEWEST_DIGITS = 6
 """To how many digits MuJoCo rounds what it saves; other programs keep more."""
 _ROUNDED = 6e-6
 """By how much rounding changes a number at most, as a part of it."""
+_COMPUTED = 1e-10
+"""By how much a number differs at most, as a part of it, that was computed again from others."""
 _TURNED = 1e-5
 """The same for a quaternion: of three angles that are rounded, each turns it by half of its error."""
 URI = "uri"
@@ -106,11 +108,13 @@ def _signs(numbers: tuple[object, ...]) -> Iterable[float]:
 
 
 def is_rounded(now: float, then: float) -> bool:
-    """Whether a number is another one, or that one rounded: to six or more digits, or to single precision."""
+    """Whether a number is another one, or that one computed again or rounded: to six or more digits, or to single precision."""
     if now == then or (now != now and then != then):
         return True
     if not abs(now - then) <= _ROUNDED * abs(then):
         return False
+    if abs(now - then) <= _COMPUTED * abs(then):
+        return True
     return any(now == float(f"{then:.{digits}g}") for digits in range(_FEWEST_DIGITS, 17)) or now == _single(then)
 
 

@@ -37,7 +37,8 @@ def pieces_of_meshes(image: Mechanism, residue: Residue) -> dict[Id, list[Elemen
     if not waiting:
         return {}
     changed = {change.element for change in residue.changes}
-    firsts = [key for key, edge in image.graph.edges.items() if key.kind == "shape" and _mesh_of(edge) in changed]
+    known = {key: _mesh_of(edge) for key, edge in image.graph.edges.items() if key.kind == "shape"}
+    firsts = [key for key, mesh in known.items() if mesh in changed or (mesh in only_there and key in changed)]
     gone = [key for key in changed if key.kind == "shape" and key not in image.graph.edges]
     places = {change.element: pose_weight(change.there[0]) for change in residue.changes if _is_of_arcs(change)}  # type: ignore[index]
     found: dict[Id, list[Element]] = {}
@@ -106,15 +107,16 @@ def _is_same(image: Mechanism, now: Id, old: Id, assets: Mapping[Id, object]) ->
 def with_first_pieces(
     image: Mechanism, vertices: dict[Id, VertexPart], edges: dict[Id, RobotEdge], residue: Residue, apart: Iterable[Id]
 ) -> None:
-    """Give each shape that was taken apart its own piece of the mesh, as the image has it: the mesh of the source is the whole."""
+    """Give each shape that was taken apart its own piece of the mesh, as the image has it, where the mesh of that id is now the whole."""
     called = {own: there for there, own in residue.alignment.names}
+    only_there = {removal.id for removal in residue.removals}
     free = Names((*vertices, *edges))
     known: dict[Id, Id] = {}
     for key in apart:
         edge = edges.get(key)
         for number, arc in enumerate(edge.arcs) if edge is not None else ():
             piece = image.graph.vertices.get(arc.target)
-            if edge is None or arc.role != "mesh" or not isinstance(piece, Mesh):
+            if edge is None or arc.target in only_there or not isinstance(piece, Mesh):
                 continue
             if arc.target not in known:
                 known[arc.target] = free.take(*called.get(arc.target, arc.target))

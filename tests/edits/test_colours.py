@@ -98,6 +98,24 @@ def test_an_edit_of_one_colour_of_a_mesh_arrives(
     assert (again.edits, [row.message for row in again.report if row.code.id == "HX118"]) == ((), [])
 
 
+@pytest.mark.parametrize("number", [0, 1, 2, 4])
+@pytest.mark.unread("HX101", "HX105", "HX202")
+def test_pieces_of_a_mesh_that_is_touched_as_well_are_pieces(number: int, tmp_path: Path) -> None:
+    """What is touched stays whole, and is a mesh of its own in MJCF."""
+    (tmp_path / "there").mkdir()
+    original, there = tmp_path / "arm.urdf", tmp_path / "there/arm.xml"
+    collision = '    <collision>\n      <geometry><mesh filename="pair.obj"/></geometry>\n    </collision>\n'
+    original.write_text(ARM.replace("    </visual>\n", f"    </visual>\n{collision}"))
+    written_pair(tmp_path)
+    hx.convert(original, there)
+    _, edit, expected = EDITS[number]
+    there.write_text(edit(there.read_text()))
+    hx.update(original, there)
+    assert visuals(original.read_text(), "base") == expected
+    assert original.read_text().count(collision) == 2
+    assert hx.update(original, there).edits == ()
+
+
 PAINT = '<material name="paint"><color rgba="0 0 1 1"/></material>'
 
 

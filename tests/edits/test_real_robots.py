@@ -17,8 +17,10 @@ from hymeko_x.compare.relevance import relevant
 from hymeko_x.corpus.catalog import development_files
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.edits.text import EditedFiles, with_new_files
+from hymeko_x.edits.unnamed import with_same_numbers
 from hymeko_x.edits.updating import update
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.parts import Body
 from hymeko_x.residue.align import align
 from hymeko_x.rewrite import Options
 from hymeko_x.rewrite.inertia import LEAST
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
 
 SINGLE = Tolerance(1e-9, 1e-6)
 """By how much numbers that a stage stores in single precision differ."""
+NAMELESS = "world_body"
+"""How names begin that bodies of MJCF without one get, with their number."""
 MORE = "more edits did not arrive"
 """How a note ends that lists some of many."""
 LISTED = ("mesh", "material", "texture", "layer", "subset")
@@ -86,8 +90,9 @@ def unreported(image: Mechanism, edited: Mechanism, told: str) -> list[str]:
 
     Assets that a file lists without a use do not count, nor texts of the whole: classes, which are grouped anew.
     """
-    aligned = align(image, edited)[1]
-    rest = relevant(diff(aligned, edited, SINGLE), aligned, edited, SINGLE)
+    numbered = with_same_numbers(edited, image, {key for key, _ in image.vertices(Body) if key.name.startswith(NAMELESS)})
+    aligned = align(image, numbered)[1]
+    rest = relevant(diff(aligned, numbered, SINGLE), aligned, numbered, SINGLE)
     named = [edit for edit in rest if edit.element.kind not in LISTED and edit.element != ROOT]
     others = [edit for edit in named if not (_is_given_weight(edit) or _is_least_weight(edit) or _is_default_colour(edit))]
     return [str(edit) for edit in others if edit.element.name.partition("/")[0] not in told]

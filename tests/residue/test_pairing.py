@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import pytest
+
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import Id, Mechanism, shape_edge
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Joint, Mesh, MeshShape, Role, Shape, Sphere, Tendon
 from hymeko_x.ir.values import Pose
 from hymeko_x.residue.align import align
+from hymeko_x.residue.alike import is_rounded
 from hymeko_x.residue.pairing import other_names
 from tests.robots import body, chain
 
@@ -95,3 +98,8 @@ def test_shapes_of_a_tendon_are_paired_in_the_order_of_its_path() -> None:
         robots.append(bare.with_graph(Hypergraph(bare.graph.vertices, {**bare.graph.edges, **edges, **tendon})))
     source, image = robots
     assert other_names(image, source) == ids({"g1": "a", "g2": "b", "g3": "c"})
+
+
+@pytest.mark.parametrize(("now", "is_same"), [(6.25020920497, True), (6.250209, True), (6.2502091, False), (6.2503, False)])
+def test_a_number_that_was_rounded_or_computed_again_is_no_edit(now: float, *, is_same: bool) -> None:
+    assert is_rounded(now, 6.25020920502) is is_same
