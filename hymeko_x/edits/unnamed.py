@@ -40,9 +40,9 @@ def with_same_numbers(edited: Mechanism, image: Mechanism, unnamed: Set[Id]) -> 
     there = {*edited.graph.vertices, *edited.graph.edges}
     names: dict[Id, Id] = {}
     for key in there:
-        body, stroke, rest = key.name.partition("/")
-        if body in bodies:
-            names[key] = Id(key.kind, f"{bodies[body]}{stroke}{rest}")
+        for body, mark, rest in (key.name.partition("/"), key.name.rpartition("_")):
+            if body in bodies:  # and what is called after it: its shapes, and joints without names
+                names[key] = Id(key.kind, f"{bodies[body]}{mark}{rest}")
     names |= _made_way(edited, names)
     return with_references(rename(edited, names), names)
 

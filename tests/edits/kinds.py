@@ -73,7 +73,9 @@ def _remove(root: Any, value: float, place: int) -> str:
 
 
 def _rename(root: Any, value: float, place: int) -> str:
-    link = _chosen([*root.iter("link")], place)
+    link = _chosen([link for link in root.iter("link") if not link.get("name").startswith("world")], place)  # which stands for the world
+    if link is None:
+        return "nothing"
     old, new = link.get("name"), f"new_{link.get('name')}"
     link.set("name", new)
     for user in root.iter():
