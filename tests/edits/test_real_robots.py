@@ -44,6 +44,8 @@ NAMELESS = "world_body"
 """How names begin that bodies of MJCF without one get, with their number."""
 MORE = "more edits did not arrive"
 """How a note ends that lists some of many."""
+GAINS = "follow from masses"
+"""What a note says of gains that the conversion computes."""
 LISTED = ("mesh", "material", "texture", "layer", "subset")
 """What a file may list without a use."""
 SUFFIX = {**SUFFIXES, "sdf": ".sdf"}
@@ -95,7 +97,13 @@ def unreported(image: Mechanism, edited: Mechanism, told: str) -> list[str]:
     rest = relevant(diff(aligned, numbered, SINGLE), aligned, numbered, SINGLE)
     named = [edit for edit in rest if edit.element.kind not in LISTED and edit.element != ROOT]
     others = [edit for edit in named if not (_is_given_weight(edit) or _is_least_weight(edit) or _is_default_colour(edit))]
-    return [str(edit) for edit in others if edit.element.name.partition("/")[0] not in told]
+    return [str(edit) for edit in others if not _is_told(edit, told)]
+
+
+def _is_told(edit: Difference, told: str) -> bool:
+    """Whether a note names the element, or the value under another number of the element; of gains that follow from masses it names two."""
+    is_gain = edit.element.kind == "actuator" and edit.field.startswith("parameters") and GAINS in told
+    return is_gain or edit.element.name.partition("/")[0] in told or f"{edit.field}: {edit.before} -> {edit.after}" in told
 
 
 def _is_given_weight(edit: Difference) -> bool:
