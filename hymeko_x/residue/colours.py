@@ -60,7 +60,7 @@ def _pose_of(piece: Element) -> Pose:
 
 
 def _is_of_arcs(change: Change) -> bool:
-    return change.path == ARCS and isinstance(change.there, tuple)
+    return change.path == ARCS and isinstance(change.there, tuple) and bool(change.there)
 
 
 def _materials_there(residue: Residue) -> dict[Id, Id]:

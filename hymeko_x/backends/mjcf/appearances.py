@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
@@ -13,8 +14,8 @@ from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.packing import Packing
-    from hymeko_x.ir.mechanism import Id
-    from hymeko_x.ir.parts import Mesh
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.parts import Mesh, Rgba
     from hymeko_x.meshes.submesh import Appearance
 
 _WHITE = (1.0, 1.0, 1.0, 1.0)
@@ -29,7 +30,7 @@ def material_of(run: Packing, found: Appearance | None, mesh: Mesh) -> Id | None
     if known is not None:
         return known
     png = None if found.image is None else png_bytes(found.image)
-    key = run.looks.get((found.rgba or (png and _WHITE), png))
+    key = _of_robot(run, found.rgba or (_WHITE if png else None), png)
     if key is None:
         key = run.add_material(Material(meaning_of(found) or file_stem(mesh.uri or ""), found.rgba), mark="_")
         if png is not None:
@@ -38,16 +39,25 @@ def material_of(run: Packing, found: Appearance | None, mesh: Mesh) -> Id | None
     return key
 
 
-def looks_of_robot(run: Packing) -> dict[tuple[object, bytes | None], Id]:
-    """The materials of the robot itself that are a colour, or an image, and nothing else; the first of those that look alike."""
-    found: dict[tuple[object, bytes | None], Id] = {}
-    for key, part in run.mechanism.vertices(Material):
+def _of_robot(run: Packing, rgba: Rgba | None, png: bytes | None) -> Id | None:
+    """The first material of the robot itself that is this colour, with this image or without one, and nothing else."""
+    if run.plain is None:
+        run.plain = _plain_materials(run.mechanism)
+    white: list[Id] = run.plain.get(None, []) if png is not None and rgba == _WHITE else []
+    for key in [*run.plain.get(rgba, []), *white]:
         layers = [edge for _, edge, _ in run.mechanism.graph.edges_at(key) if isinstance(edge.data, Layer)]
-        if part != Material(part.name, part.rgba) or len(layers) > 1:
-            continue
-        image = next((_image_of(run, arc.target) for edge in layers for arc in edge.arcs if arc.target != key), None)
-        if image is not None or not layers:
-            found.setdefault((part.rgba or (image and _WHITE), image), key)
+        images = [_image_of(run, arc.target) for edge in layers for arc in edge.arcs if arc.target != key] if png else layers
+        if images == ([] if png is None else [png]):
+            return key
+    return None
+
+
+def _plain_materials(mechanism: Mechanism) -> dict[Rgba | None, list[Id]]:
+    """The materials of a robot that have a colour or images alone, by colour."""
+    found: dict[Rgba | None, list[Id]] = defaultdict(list)
+    for key, part in mechanism.vertices(Material):
+        if part == Material(part.name, part.rgba):
+            found[part.rgba].append(key)
     return found
 
 

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.assets.companions import companion_reader
 from hymeko_x.assets.shelf import Shelf, read_file
-from hymeko_x.backends.mjcf.appearances import looks_of_robot, material_of, meaning_of
+from hymeko_x.backends.mjcf.appearances import material_of, meaning_of
 from hymeko_x.backends.mjcf.mesh_names import name_meshes
 from hymeko_x.backends.mjcf.packing import Packing, warn
 from hymeko_x.backends.mjcf.textures import pack_textures
@@ -63,7 +63,6 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
     if not any(mechanism.assets()):
         return mechanism
     run = Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
-    run.looks = looks_of_robot(run)
     pack_textures(run)
     _pack_meshes(run)
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), extra) for key, extra in run.attributes.items()}}
@@ -90,7 +89,7 @@ def _share_pieces(run: Packing) -> None:
     """A piece of a file that is the same as another mesh is not declared beside it."""
     known: dict[object, Id] = {}
     same: dict[Id, Id] = {}
-    meshes = [(key, part) for key, part in run.vertices.items() if isinstance(part, Mesh)]
+    meshes = [(key, part) for key, part in run.vertices.items() if isinstance(part, Mesh) and part.uri is not None]
     for key, part in sorted(meshes, key=lambda item: item[0] not in run.mechanism.graph.vertices):
         first = known.setdefault((replace(part, name=None), run.attributes.get(key)), key)
         if first != key and key not in run.mechanism.graph.vertices:

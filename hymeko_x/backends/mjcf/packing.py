@@ -14,14 +14,15 @@ if TYPE_CHECKING:
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Code, Report
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+    from hymeko_x.ir.parts import Rgba
     from hymeko_x.source import Files
 
 
 class Packing(Builder, kw_only=True):
     """One run: what it reads from, and what it adds to the mechanism.
 
-    ``attributes`` are those of meshes and textures in MJCF, ``materials`` those of appearances in files, by colour and image, and ``looks``
-    the robot's own by colour and PNG.
+    ``attributes`` are those of meshes and textures in MJCF, ``materials`` those of appearances in files, by colour and image, ``plain``
+    those of the robot itself without more than these, by colour.
     """
 
     mechanism: Mechanism
@@ -31,7 +32,7 @@ class Packing(Builder, kw_only=True):
     gone: list[Id] = field(default_factory=list)
     attributes: dict[Id, Extra] = field(default_factory=dict)
     materials: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
-    looks: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
+    plain: dict[Rgba | None, list[Id]] | None = None
 
 
 def warn(run: Packing, key: Id, code: Code, message: str, uri: str | None = None) -> None:
