@@ -36,8 +36,8 @@ def with_same_paths(edited: Contents, image: Contents) -> Mechanism:
             known[data].append(uri)
     paths: dict[str, str] = {}
     for uri in mine - theirs:
-        same = known.get(edited.fetch(uri) or b"", ())
-        if same:
+        data = edited.fetch(uri)
+        if data is not None and (same := known.get(data)):
             paths[uri] = next((other for other in same if posixpath.basename(other) == posixpath.basename(uri)), same[0])
     changed: dict[Id, VertexPart] = {
         key: replace(part, uri=paths[part.uri]) for key, part in edited.mechanism.assets() if part.uri is not None and part.uri in paths
