@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
     from hymeko_x.residue import Element, Residue
 
-DOFS, ENDS = ("data", "dofs"), ("arcs",)
-"""Where the dofs and the ends of a joint stand in its edge; the last hinge has others than the ball."""
+DOFS = ("data", "dofs")
+"""Where the dofs of a joint stand in its edge."""
 _ABOVE = 2
 """How many hinges a ball has above the last one."""
 _PARENT = ("arcs", 0, "target")

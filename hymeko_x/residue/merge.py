@@ -18,7 +18,7 @@ from hymeko_x.ir.parts import Body, Drive, Layer, Mesh, Mount, Plane, Sense, Sha
 from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.alike import URI, holds, is_alike, is_moved, without_surface
 from hymeko_x.residue.arcs import ARCS, with_edited_weights, with_own_ends, without_lost_material
-from hymeko_x.residue.balls import DOFS, ENDS, hinges_of_balls, moved_and_apart
+from hymeko_x.residue.balls import DOFS, hinges_of_balls, moved_and_apart
 from hymeko_x.residue.colours import pieces_of_meshes, taken_apart, with_first_pieces
 from hymeko_x.residue.landmarks import renamed_since
 from hymeko_x.residue.parts import GEOMETRY, broken, capsules_of, parts_of
@@ -86,8 +86,6 @@ class _Merge:
     """Those among them that are meshes of several colours."""
     _moved: dict[Id, RobotArc] = field(init=False)
     """The arcs to their parents of balls that were moved."""
-    _layers: dict[Id, list[Id]] = field(init=False)
-    """The layers that only the image has, by their materials and images."""
     _shapes_then: dict[Id, list[Element]] = field(init=False)
     """The shapes that bodies had in the image, of those that the residue tells of."""
 
@@ -103,11 +101,11 @@ class _Merge:
         self._moved, hinges = moved_and_apart(self.image, balls)
         self._parts = capsules | meshes | balls
         self._broken = dict.fromkeys(broken(self.image, capsules), (GEOMETRY,))
-        self._broken |= dict.fromkeys(self._apart, (ARCS,)) | dict.fromkeys(hinges, (DOFS, ENDS))
+        self._broken |= dict.fromkeys(self._apart, (ARCS,)) | dict.fromkeys(hinges, (DOFS, ARCS))
         name = self._change_fields()
-        with_first_pieces(self.image, self.vertices, self.edges, self.residue, self._apart)
         kept, withheld = self._edited_shapes()
         self._add(withheld)
+        with_first_pieces(self.image, self.vertices, self.edges, self.residue, self._apart)
         removed = self._remove(kept)
         self._let_nothing_dangle(removed)
         merged = with_sides(replace(self.image, name=name, graph=self._ordered()), self.residue, self.image)
@@ -259,10 +257,10 @@ class _Merge:
     def _let_nothing_dangle(self, removed: dict[Id, VertexPart | RobotEdge]) -> None:
         """Keep what something new is on, and drop what was on something that is gone."""
         added = {key for key, _ in self.residue.additions}
-        self._layers = defaultdict(list)
+        layers: dict[Id, list[Id]] = defaultdict(list)
         for key, part in removed.items():
             for arc in part.arcs if isinstance(part, Edge) and isinstance(part.data, Layer) else ():
-                self._layers[arc.target].append(key)
+                layers[arc.target].append(key)
         users: dict[Id, list[Id]] = defaultdict(list)
         for key, edge in self.edges.items():
             for arc in edge.arcs:
@@ -273,7 +271,7 @@ class _Merge:
             if target in self.vertices or target in self.edges:
                 continue
             if target in removed and any(key not in added and key in self.edges for key in users[target]):
-                queue += self._put_back(target, removed, users)
+                queue += self._put_back(target, removed, layers, users)
                 continue
             for key in users[target]:
                 if key in self.edges:
@@ -289,13 +287,15 @@ class _Merge:
             del self.vertices[thing]
         return things
 
-    def _put_back(self, key: Id, removed: dict[Id, VertexPart | RobotEdge], users: dict[Id, list[Id]]) -> list[Id]:
-        """Keep something, and what it is on: a material with its images."""
+    def _put_back(
+        self, key: Id, removed: dict[Id, VertexPart | RobotEdge], layers: Mapping[Id, list[Id]], users: dict[Id, list[Id]]
+    ) -> list[Id]:
+        """Keep something, and what it is on: a material with its images, which its ``layers`` name."""
         part = removed[key]
         if not isinstance(part, Edge):
             self.vertices[key] = part
-            layers = [layer for layer in self._layers[key] if layer in removed and layer not in self.edges]
-            return [target for layer in layers for target in self._put_back(layer, removed, users)]
+            own = [layer for layer in layers.get(key, ()) if layer not in self.edges]
+            return [target for layer in own for target in self._put_back(layer, removed, layers, users)]
         self.edges[key] = part
         for arc in part.arcs:
             users[arc.target].append(key)

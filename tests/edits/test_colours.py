@@ -9,6 +9,11 @@ import pytest
 from lxml import etree
 
 import hymeko_x as hx
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir.mechanism import Id
+from hymeko_x.residue.delta import residue_of
+from hymeko_x.residue.merge import restore
+from tests.edits.test_copying import written
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -148,3 +153,20 @@ def test_an_edit_of_one_colour_of_a_kept_mesh_comes_home(
     text = (tmp_path / "home.urdf").read_text()
     assert [(place, Path(mesh).name) for place, mesh in visuals(text, "base")] == [(place, Path(mesh).name) for place, mesh in expected]
     assert visuals(text, "hand") == WHOLE
+
+
+@pytest.mark.unread("HX101", "HX105", "HX202")
+def test_what_the_image_lacks_shows_the_whole_mesh_where_another_is_taken_apart(tmp_path: Path) -> None:
+    """Of the two shapes of the mesh the image has only one, and of that a piece is moved."""
+    original, there = converted(tmp_path, assets="reference")
+    source = hx.load(original).mechanism
+    base, hand = there.read_text().split('<body name="hand">')
+    image, edited = (
+        hx.load(written(there, f'{text}<body name="hand">{hand.replace(RED, "").replace(BLUE, "")}')).mechanism
+        for text in (base, base.replace(BLUE, raised(BLUE)))
+    )
+    home = restore(edited, residue_of(source, image), Report()).mechanism
+    shape = source.graph.edges[Id("shape", "hand/visual")]
+    assert home.graph.edges[Id("shape", "hand/visual")] == shape
+    (mesh,) = (arc.target for arc in shape.arcs if arc.role == "mesh")
+    assert home.graph.vertices[mesh] == source.graph.vertices[mesh]
