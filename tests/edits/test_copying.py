@@ -65,24 +65,14 @@ def test_a_conversion_within_a_format_gives_the_same_bytes(format: str, folder: 
     assert (tmp_path / folder / "parts/wheel.xacro").exists() is (folder == "" or format == "xacro")
 
 
-def test_of_a_file_that_moves_only_the_path_changes(tmp_path: Path) -> None:
-    text = ARM.replace('<box size="0.20 0.2 0.05"/>', '<mesh filename="../plate.stl" scale="1.0 1 1"/>')
+@pytest.mark.parametrize("uri", ["../plate.stl", "file://plate.stl"])
+def test_of_a_file_that_moves_only_the_path_changes(uri: str, tmp_path: Path) -> None:
+    text = ARM.replace('<box size="0.20 0.2 0.05"/>', f'<mesh filename="{uri}" scale="1.0 1 1"/>')
     for folder in ("a", "b"):
         (tmp_path / folder).mkdir()
-    (tmp_path / "plate.stl").write_bytes(b"solid plate\nendsolid plate\n")
-    (tmp_path / "a/arm.urdf").write_text(text)
-    hx.convert(tmp_path / "a/arm.urdf", tmp_path / "b/arm.urdf")
-    assert (tmp_path / "b/arm.urdf").read_text() == text.replace("../plate.stl", "meshes/plate.stl")
-    assert (tmp_path / "b/meshes/plate.stl").exists()
-
-
-def test_a_mesh_under_a_new_path_is_not_copied_under_the_old_one_as_well(tmp_path: Path) -> None:
-    text = ARM.replace('<box size="0.20 0.2 0.05"/>', '<mesh filename="file://plate.stl"/>')
-    for folder in ("a", "b"):
-        (tmp_path / folder).mkdir()
-    (tmp_path / "a/plate.stl").write_bytes(b"solid plate\nendsolid plate\n")
-    (tmp_path / "a/arm.urdf").write_text(text)
-    hx.convert(tmp_path / "a/arm.urdf", tmp_path / "b/arm.urdf")
+    written(tmp_path / "a" / uri.removeprefix("file://"), "solid plate\nendsolid plate\n")
+    hx.convert(written(tmp_path / "a/arm.urdf", text), tmp_path / "b/arm.urdf")
+    assert (tmp_path / "b/arm.urdf").read_text() == text.replace(uri, "meshes/plate.stl")
     assert sorted(path.relative_to(tmp_path / "b").as_posix() for path in (tmp_path / "b").rglob("*.*")) == ["arm.urdf", "meshes/plate.stl"]
 
 
