@@ -76,9 +76,10 @@ def length_of(written: Written) -> float:
 
 
 def between_ends(pose: Pose, length: float) -> Pose:
-    """The pose with the notation ``fromto``, of something along its z axis of this length in m."""
+    """The pose with the notation ``fromto``, of something along its z axis of this length in m; the numbers without noise."""
     half = scaled(rotate(pose.quat, Z), length / 2.0)
-    return Pose(pose.xyz, pose.quat, Written("fromto", (*add(pose.xyz, half), *add(pose.xyz, scaled(half, -1.0)))))
+    ends = (clean_vector(add(pose.xyz, half)), clean_vector(add(pose.xyz, scaled(half, -1.0))))
+    return Pose(pose.xyz, pose.quat, Written("fromto", (*ends[0], *ends[1])))
 
 
 def is_as_written(pose: Pose) -> bool:

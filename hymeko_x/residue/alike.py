@@ -12,8 +12,9 @@ from msgspec.structs import replace
 from hymeko_x import formats
 from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Edge
+from hymeko_x.ir.mechanism import pose_weight
 from hymeko_x.ir.parts import Role, Shape
-from hymeko_x.ir.values import IDENTITY, are_numbers
+from hymeko_x.ir.values import IDENTITY, Pose, are_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable
@@ -86,9 +87,11 @@ def without_surface(edge: RobotEdge) -> RobotEdge:
 
 
 def _is_alike_arc(now: RobotArc, then: RobotArc) -> bool:
-    return (now.sign, now.target.kind, bool(now.role)) == (then.sign, then.target.kind, bool(then.role)) and is_alike(
-        now.weight, then.weight
-    )
+    if (now.sign, now.target.kind, bool(now.role)) != (then.sign, then.target.kind, bool(then.role)):
+        return False
+    if isinstance(now.weight, Pose) or isinstance(then.weight, Pose):
+        return is_alike(pose_weight(now), pose_weight(then))
+    return is_alike(now.weight, then.weight)
 
 
 def _are_alike(now: tuple[object, ...], then: tuple[object, ...]) -> bool:

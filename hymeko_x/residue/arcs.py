@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.ir.decimals import shortest_of
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.parts import Role, Shape
-from hymeko_x.ir.values import Pose, Written
+from hymeko_x.ir.values import Pose
 from hymeko_x.ir.written import between_ends, length_of
 from hymeko_x.residue.alike import is_alike
 
@@ -76,4 +75,4 @@ def _with_ends(arc: RobotArc) -> RobotArc:
     room = _ROUNDING * max(1.0, *map(abs, kept))
     if all(abs(a - b) <= room for a, b in zip(own.numbers, kept, strict=True)):
         return arc
-    return replace(arc, weight=replace(pose, written=Written("fromto", shortest_of(own.numbers))))
+    return replace(arc, weight=replace(pose, written=own))

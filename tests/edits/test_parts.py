@@ -55,6 +55,32 @@ def test_an_edit_of_one_part_of_a_capsule_arrives(old: str, new: str, shapes: li
 
 
 @pytest.mark.unread("HX101")
+def test_a_part_without_the_noise_of_its_place_is_the_same(tmp_path: Path) -> None:
+    original, there = tmp_path / "leg.xml", tmp_path / "leg.urdf"
+    original.write_text(LEG.replace('size="0.1 0.5"', 'size="0.1 0.5" pos="2e-17 0 0.5"'))
+    hx.convert(original, there)
+    text, noise = there.read_text(), '<origin xyz="2e-17 0 0" rpy="0 0 0"/>'
+    assert text.count(noise) == 1
+    there.write_text(text.replace(noise, ""))
+    assert hx.update(original, there).edits == ()
+
+
+@pytest.mark.unread("HX101")
+def test_the_ends_of_a_geom_that_an_edit_adds_are_short_numbers(tmp_path: Path) -> None:
+    original, there = tmp_path / "leg.xml", tmp_path / "leg.urdf"
+    rod = '<default><default class="rod"><geom type="capsule" size="0.065" fromto="0 0 0 .25 0 -.25"/></default></default>'
+    body = '<body name="leg" childclass="rod"><joint name="knee"/><geom name="rod"/></body>'
+    original.write_text(f'<mujoco model="leg">{rod}<worldbody>{body}</worldbody></mujoco>')
+    hx.convert(original, there)
+    part = '<visual name="rod">\n      <origin xyz="0.125 0 -0.125"'
+    assert there.read_text().count(part) == 1
+    there.write_text(there.read_text().replace(part, part.replace("0.125", "0.5", 1)))
+    hx.update(original, there)
+    assert original.read_text().count('fromto="0.375 0 0 0.625 0 -0.25"') == 1
+    assert original.read_text().count('fromto="0 0 0 0.25 0 -0.25"') == 1
+
+
+@pytest.mark.unread("HX101")
 def test_a_capsule_whose_parts_change_together_stays_one(tmp_path: Path) -> None:
     original, there = tmp_path / "leg.xml", tmp_path / "leg.urdf"
     original.write_text(LEG.replace('group="3"', 'contype="0" conaffinity="0"'))
