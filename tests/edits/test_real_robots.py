@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import random
+import re
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -40,8 +41,8 @@ if TYPE_CHECKING:
 
 SINGLE = Tolerance(1e-9, 1e-6)
 """By how much numbers that a stage stores in single precision differ."""
-NAMELESS = "world_body"
-"""How names begin that bodies of MJCF without one get, with their number."""
+NAMELESS = re.compile(r"world_body.*|.*#\d+")
+"""Names that bodies of MJCF without one get, with their numbers."""
 MORE = "more edits did not arrive"
 """How a note ends that lists some of many."""
 GAINS = "follow from masses"
@@ -92,7 +93,7 @@ def unreported(image: Mechanism, edited: Mechanism, told: str) -> list[str]:
 
     Assets that a file lists without a use do not count, nor texts of the whole: classes, which are grouped anew.
     """
-    numbered = with_same_numbers(edited, image, {key for key, _ in image.vertices(Body) if key.name.startswith(NAMELESS)})
+    numbered = with_same_numbers(edited, image, {key for key, _ in image.vertices(Body) if NAMELESS.fullmatch(key.name)})
     aligned = align(image, numbered)[1]
     rest = relevant(diff(aligned, numbered, SINGLE), aligned, numbered, SINGLE)
     named = [edit for edit in rest if edit.element.kind not in LISTED and edit.element != ROOT]
