@@ -13,8 +13,9 @@ from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.parts import Role
 from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, rotation_angle
 from hymeko_x.residue import Alignment, Fold, Join
+from hymeko_x.residue.chains import fold_chains
 from hymeko_x.residue.pairing import content_of, other_names
-from hymeko_x.residue.realign import are_twins, fold_chains, join_twins, move_frames, realign
+from hymeko_x.residue.realign import are_twins, join_twins, move_frames, realign
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

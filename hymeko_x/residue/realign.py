@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
 from hymeko_x.compare.diff import Difference
 from hymeko_x.ir.graph import Edge
-from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, joint_edge, pose_weight
+from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, pose_weight
 from hymeko_x.ir.names import rename, with_dof_names
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape, World
-from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate, rotate_tensor
+from hymeko_x.ir.parts import Body, Joint, Role, Shape, World
+from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate_tensor
+from hymeko_x.residue.chains import fold_chains
 from hymeko_x.rewrite.references import with_references
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from hymeko_x.ir.mechanism import JointView, Mechanism, RobotArc, RobotEdge
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.parts import Inertial, VertexPart
     from hymeko_x.ir.values import Pose
-    from hymeko_x.residue import Alignment, Fold, Join
+    from hymeko_x.residue import Alignment, Join
 
 
 def realign(image: Mechanism, alignment: Alignment) -> Mechanism:
@@ -65,63 +65,6 @@ def alignment_differences(alignment: Alignment) -> Iterator[Difference]:
         yield Difference(shape, "role", "both", f"visual, and collision as '{twin.name}'")
     for body, pose in alignment.frames:
         yield Difference(body, "frame", "its own", f"{numbers_text(pose.xyz)}, {numbers_text(pose.quat)} from there")
-
-
-# ---- chains of joints ------------------------------------------------------------------------------------------------------
-
-
-def fold_chains(mechanism: Mechanism, folds: Iterable[Fold]) -> Mechanism:
-    """Chains of joints as one joint of several dofs, where the bodies between them carry nothing."""
-    edges: dict[Id, RobotEdge] = {}
-    gone: set[Id] = set()
-    for fold in folds:
-        views = [mechanism.joints.get(key) for key in fold.chain]
-        chain = [view for view in views if view is not None]
-        if len(chain) < len(views) or not _is_bare_chain(mechanism, fold, chain):
-            continue
-        gone.update((*fold.chain, *fold.between))
-        edges[fold.joint] = folded(chain)
-    if not edges:
-        return mechanism
-    kept = {key: edge for key, edge in mechanism.graph.edges.items() if key not in gone}
-    vertices = {key: part for key, part in mechanism.graph.vertices.items() if key not in gone}
-    graph = replace(mechanism.graph, vertices=vertices, edges={**kept, **edges})
-    layout = tuple(key for key in mechanism.layout if key not in gone)
-    return replace(mechanism, graph=graph, layout=layout)
-
-
-def _is_bare_chain(mechanism: Mechanism, fold: Fold, chain: list[JointView]) -> bool:
-    """Whether the joints follow each other and nothing else is on the bodies between them."""
-    inner = [view.child for view in chain[:-1]]
-    if inner != list(fold.between) or any(below.parent != above.child for above, below in pairwise(chain)):
-        return False
-    own = set(fold.chain)
-    hanging = (found.edge for body in inner for found in mechanism.graph.incidence.get(body, ()))
-    return own.issuperset(hanging) and all(_has_no_weight(mechanism.vertex(body, Body)) for body in inner)
-
-
-def _has_no_weight(body: Body) -> bool:
-    """Whether a body is only there to part two joints: what a format demands for a massless one is next to nothing."""
-    return body.inertial is None or (body.inertial.mass or 0.0) < 1e-6
-
-
-def folded(chain: list[JointView]) -> RobotEdge:
-    """The edge of one joint with the dofs of all, in the frame of the first."""
-    dofs: list[Dof] = []
-    here: Pose = IDENTITY  # the frame of the current joint in that of the first, at the reference configuration
-    for number, view in enumerate(chain):
-        dofs += [_seen_from(dof, here) for dof in view.joint.dofs]
-        if number + 1 < len(chain):
-            here = compose(here, compose(inverse(view.child_pose), chain[number + 1].parent_pose))
-    return joint_edge(
-        Joint(tuple(dofs)), chain[0].parent, chain[-1].child, chain[0].parent_pose, compose(chain[-1].child_pose, inverse(here))
-    )
-
-
-def _seen_from(dof: Dof, frame: Pose) -> Dof:
-    if frame == IDENTITY:
-        return dof
-    return replace(dof, axis=rotate(frame.quat, dof.axis), anchor=apply(frame, dof.anchor), written=None)
 
 
 # ---- split shapes -----------------------------------------------------------------------------------------------------------
