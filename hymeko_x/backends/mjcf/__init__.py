@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.mjcf.actuators import write_actuators
 from hymeko_x.backends.mjcf.assets import write_assets
 from hymeko_x.backends.mjcf.bodies import write_worldbody
-from hymeko_x.backends.mjcf.classes import ROLE_CLASSES, settle_angles, settle_folders, write_defaults
+from hymeko_x.backends.mjcf.classes import ROLE_CLASSES, settle
 from hymeko_x.backends.mjcf.contacts import write_contacts
 from hymeko_x.backends.mjcf.equalities import write_equalities
 from hymeko_x.backends.mjcf.sensors import write_sensors
@@ -54,9 +54,7 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
             _WRITERS[section](sheet)
     sheet.write_kept("")
     if not sheet.from_mjcf:
-        write_defaults(sheet, settings_end)
-        settle_angles(sheet)
-        settle_folders(sheet)
+        settle(sheet, settings_end)
     lines = render(sheet.root)
     return Package("\n".join([*lines, ""]).encode(), carry=lambda residue: _with_residue(sheet, lines, residue))
 

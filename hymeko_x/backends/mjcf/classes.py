@@ -198,11 +198,21 @@ def _reasons(element: Tag) -> Row:
 # ---- the section -----------------------------------------------------------------------------------------------------------
 
 
-def write_defaults(sheet: MjcfSheet, place: int) -> None:
-    """<default> at its place behind the settings, with the classes of the elements that are written there."""
-    tags = [tag for tag in _walk(sheet.root) if tag.owner is not None]
+def settle(sheet: MjcfSheet, place: int) -> None:
+    """What all elements of the written document have in common: the classes at their place behind the settings, and <compiler>."""
+    tags = _elements(sheet.root)
+    compiler = next(tag for tag in tags if tag.name == "compiler")
+    if any("euler" in tag.attributes for tag in tags):
+        compiler.attributes["eulerseq"] = sheet.settings.eulerseq
+    _settle_folders(tags, compiler)
+    _write_defaults(sheet, tags, place)
+
+
+def _write_defaults(sheet: MjcfSheet, every: list[Tag], place: int) -> None:
+    """<default> with the classes of the elements."""
+    tags = [tag for tag in every if tag.owner is not None]
     roles = {tag.attributes.get("class") for tag in tags if tag.name == "geom"}
-    shared = {(MAIN, "geom"): dict(_MASSLESS)} if _need_no_mass(sheet) else {}
+    shared = {(MAIN, "geom"): dict(_MASSLESS)} if _need_no_mass(sheet, every) else {}
     shared |= {(role, "geom"): dict(attributes) for role, attributes in _ROLES.items() if role in roles}
     inside: dict[str, list[str]] = {MAIN: [role for role in _ROLES if role in roles]}
     for found in shared_attributes(tags).classes:
@@ -213,23 +223,22 @@ def write_defaults(sheet: MjcfSheet, place: int) -> None:
         sheet.root.children[place:place] = ["", _class_tag(MAIN, {}, shared, inside)]
 
 
-def _need_no_mass(sheet: MjcfSheet) -> bool:
+def _need_no_mass(sheet: MjcfSheet, tags: list[Tag]) -> bool:
     """Whether geoms have to be massless: MuJoCo would compute a mass from them, or the robot gives their density as 0."""
     is_given = any(shape.density == 0 for _, shape, _ in sheet.mechanism.edges(Shape))
-    return is_given or any(map(_has_geoms_alone, _walk(sheet.root)))
+    return is_given or any(tag.name == "body" and _has_geoms_alone(tag) for tag in tags)
 
 
-def _has_geoms_alone(tag: Tag) -> bool:
-    """Whether it is a body whose mass MuJoCo would compute from its geoms."""
-    kinds = {child.name for child in tag.children if isinstance(child, Tag)} if tag.name == "body" else set()
+def _has_geoms_alone(body: Tag) -> bool:
+    """Whether MuJoCo would compute the mass of a body from its geoms."""
+    kinds = {child.name for child in body.children if isinstance(child, Tag)}
     return "geom" in kinds and "inertial" not in kinds
 
 
-def settle_folders(sheet: MjcfSheet) -> None:
+def _settle_folders(every: list[Tag], compiler: Tag) -> None:
     """<compiler> names the folder of all meshes, and that of all textures, where there are three or more."""
-    compiler = next(child for child in sheet.root.children if isinstance(child, Tag) and child.name == "compiler")
     for word, kind in (("meshdir", "mesh"), ("texturedir", "texture")):
-        tags = [tag for tag in _walk(sheet.root) if tag.name == kind and "file" in tag.attributes]
+        tags = [tag for tag in every if tag.name == kind and "file" in tag.attributes]
         folders = {tag.attributes["file"].rpartition("/")[0] for tag in tags}
         folder = next(iter(folders)) if len(folders) == 1 and len(tags) >= _FEWEST_FILES else ""
         if folder:
@@ -238,20 +247,15 @@ def settle_folders(sheet: MjcfSheet) -> None:
                 tag.attributes["file"] = tag.attributes["file"].removeprefix(f"{folder}/")
 
 
-def settle_angles(sheet: MjcfSheet) -> None:
-    """<compiler> says how angles are meant, where there are any."""
-    if any("euler" in tag.attributes for tag in _walk(sheet.root)):
-        compiler = next(child for child in sheet.root.children if isinstance(child, Tag) and child.name == "compiler")
-        compiler.attributes["eulerseq"] = sheet.settings.eulerseq
-
-
-def _walk(root: Tag) -> Iterable[Tag]:
+def _elements(root: Tag) -> list[Tag]:
     """All elements in document order."""
+    found: list[Tag] = []
     stack = [root]
     while stack:
         tag = stack.pop()
-        yield tag
+        found.append(tag)
         stack += [child for child in reversed(tag.children) if isinstance(child, Tag)]
+    return found
 
 
 def _class_tag(

@@ -157,7 +157,7 @@ class MjcfSheet(Struct):
                 found |= noted
             elif not (self._means(group, below, value) if context else value is inherited or same_value(inherited, value)):
                 texts = group.write(value, self.settings)
-                for name, text in {**texts, **undone(group, base, texts)}.items():
+                for name, text in ({**texts, **undone(group, base, texts)} if base else texts).items():
                     if base.get(name) != text:
                         found[name] = self._unsigned(name, text)
         return found
