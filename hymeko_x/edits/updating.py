@@ -10,7 +10,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes, pipeline
-from hymeko_x.compare.diff import diff
+from hymeko_x.compare.diff import Difference, diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import is_idle
 from hymeko_x.diagnostics import Origin, Refusal, Report, counted, listed, refuse
@@ -28,7 +28,6 @@ from hymeko_x.rewrite import Options
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Set
 
-    from hymeko_x.compare.diff import Difference
     from hymeko_x.edits.conversion import Left
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
@@ -129,7 +128,7 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
     old = {path: original.data if path == original.name else original.files.read(path) for path in changed}
     robot = with_same_numbers(found.before, first.before, unnamed_bodies(first.before))
     robot = with_same_assets(with_same_edges(robot, first.before, unnamed_edges(first.before)), first.before)
-    edits = diff(first.before, rename(robot, _called_after(first.before, robot)), TOLERANCE)
+    edits = _edits(first.before, robot)
     return Updated(replace(found.before, origins=first.before.origins), edits, original.data, changed, old, beside, report)
 
 
@@ -195,9 +194,14 @@ def _without_inertials(before: Mechanism, after: Mechanism, bodies: Set[str]) ->
     return after.replace(vertices=inertials)
 
 
-def _called_after(before: Mechanism, after: Mechanism) -> dict[Id, Id]:
-    """The old ids of elements that are called after a body, and have followed its new name, by their new ones."""
-    return {new: old for new, old in other_names(after, before).items() if old.kind == new.kind == "shape"}
+def _edits(before: Mechanism, after: Mechanism) -> tuple[Difference, ...]:
+    """What was edited; a new name is one edit, whatever refers to the element or is called after it."""
+    names = {new: old for new, old in other_names(after, before).items() if old.kind == new.kind}
+    renamed: dict[tuple[str, str], Difference] = {}
+    for new, old in names.items():
+        if old.kind != "shape":  # whose name is a field
+            renamed.setdefault((old.name, new.name), Difference(old, "name", repr(old.name), repr(new.name)))
+    return (*renamed.values(), *diff(before, rename(after, names), TOLERANCE))
 
 
 def _with_imported_names(before: Mechanism, after: Mechanism, imported: frozenset[Id]) -> Mechanism:

@@ -58,5 +58,5 @@ def test_a_contact_that_is_removed_leaves_those_behind_it_as_they_are(tmp_path: 
 
 def test_a_closure_that_is_named_leaves_the_one_behind_it_without_a_name(tmp_path: Path) -> None:
     text, edits = updated(tmp_path, [("weld", "grip")])
-    assert edits == ["loop 'weld': removed", "loop 'grip': added"]
+    assert edits == ["loop 'weld' name: 'weld' -> 'grip'"]
     assert text == THREE.replace('<weld body1="a"', '<weld name="grip" body1="a"')

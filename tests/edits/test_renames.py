@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import hymeko_x as hx
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.xml.references import with_new_references
 
 SDF = """<?xml version="1.0"?>
@@ -58,7 +59,8 @@ def renamed(folder: Path, text: str, suffix: str, old: str) -> str:
     hx.convert(original, there)
     assert f'"{old}"' in there.read_text()
     there.write_text(there.read_text().replace(f'"{old}"', f'"new_{old}"'))
-    hx.update(original, there)
+    edits = [edit for edit in hx.update(original, there).edits if edit.element != ROOT]  # whose fragments have the name, too
+    assert [(edit.element.name, edit.field, edit.before, edit.after) for edit in edits] == [(old, "name", f"'{old}'", f"'new_{old}'")]
     assert hx.update(original, there, dry_run=True).edits == ()
     return original.read_text()
 
