@@ -37,7 +37,8 @@ def copied(
     Nor is a text copied whose root is that of an older version of its format, as the reader has reported, or that would lose what is
     ``kept`` inside of it.
 
-    The files that the text includes stand beside the output as they stand beside the source, if they are in its folder or below that.
+    The files that the text includes stand beside the output as they stand beside the source, if they are in its folder or below that, and
+    else below the output; a package that is not found from there (``$(find arm_description)``) gives way to the paths of its files.
     """
     if any(diagnostic.code == codes.WRONG_ROOT for diagnostic in report):
         return None
@@ -46,8 +47,9 @@ def copied(
     found, opened = Report(), tuple(source.files.opened) if isinstance(source.files, DiskFiles) else ()
     shelf = Shelf(place.assets or format.assets, place.folder, around=place.around, origin=source.name)
     placed = _placed(mechanism, format, shelf, source.files, found)
-    package = _with_text(source, format, mechanism, placed, Package(source.data, shelf.files, shelf.copies), opened)
-    if package is None or not _is_same_robot(package, source, format, placed, place.folder, kept):
+    there = replace(source.files, base=Path(place.folder)) if isinstance(source.files, DiskFiles) else DiskFiles(Path(place.folder))
+    package = _with_text(source, format, mechanism, placed, Package(source.data, shelf.files, shelf.copies), opened, there)
+    if package is None or not _is_same_robot(package, source, format, placed, there, kept):
         return None
     report.extend(found)
     return package
@@ -66,7 +68,7 @@ def _placed(mechanism: Mechanism, format: Format, shelf: Shelf, files: Files, re
 
 
 def _with_text(
-    source: Source, format: Format, before: Mechanism, after: Mechanism, package: Package, opened: Collection[str]
+    source: Source, format: Format, before: Mechanism, after: Mechanism, package: Package, opened: Collection[str], there: DiskFiles
 ) -> Package | None:
     """The package with the text in which the paths are those of the mechanism ``after``, and with the files ``opened`` for reading it."""
     home = os.path.dirname(source.name) or "."
@@ -75,7 +77,7 @@ def _with_text(
         if format.outline is None:
             return None
         changed = text_with_edits(_with_placed(source, package), format, before, after, Report()).changed
-    changed = {**changed, **_with_includes_below(source, changed, opened, home)}
+    changed = {**changed, **_with_includes_below(source, changed, opened, there)}
     copies = {name: path for path in opened if (name := _below(path, home)) is not None and path not in changed}
     files = {name: data for path, data in changed.items() if path != source.name and (name := _name_below(path, home)) is not None}
     return replace(
@@ -90,9 +92,9 @@ def _with_placed(source: Source, package: Package) -> Source:
     return replace(source, files=Elsewhere(source.files, PackageFiles(package, source.files), source.files))
 
 
-def _with_includes_below(source: Source, changed: Mapping[str, bytes], opened: Iterable[str], home: str) -> dict[str, bytes]:
+def _with_includes_below(source: Source, changed: Mapping[str, bytes], opened: Iterable[str], there: DiskFiles) -> dict[str, bytes]:
     """The texts that include files which stand above their folder or beside it, and these, with paths to where they are put: below it."""
-    suffix = os.path.splitext(source.name)[1]
+    suffix, home = os.path.splitext(source.name)[1], os.path.dirname(source.name) or "."
     texts = {source.name: changed.get(source.name, source.data)}
     texts |= {path: changed.get(path) or source.files.read(path) for path in opened if path.endswith(suffix)}
     moved: set[str] = set()
@@ -102,7 +104,39 @@ def _with_includes_below(source: Source, changed: Mapping[str, bytes], opened: I
         for user in users:
             texts[user] = texts[user].replace(old, new)
         moved |= {path, *users} if users else set()
-    return {path: texts[path] for path in moved}
+    for path, text in texts.items():
+        texts[path], named = _without_packages(path, text, source, frozenset(opened), there)
+        moved |= {path, *named} if named else set()
+    return {path: texts.get(path) or source.files.read(path) for path in moved}
+
+
+_IN_PACKAGE = re.compile(rb"\$\(find ([\w.-]+)\)(/[\w./-]+)")
+
+
+def _without_packages(path: str, text: bytes, source: Source, opened: Collection[str], there: DiskFiles) -> tuple[bytes, set[str]]:
+    """The text of a file in which opened files that it names by packages are named by where they are put, and these files.
+
+    Packages that are found from the output as well stay.
+    """
+    home = os.path.dirname(source.name) or "."
+    named: set[str] = set()
+
+    def by_place(match: re.Match[bytes]) -> bytes:
+        package, rest = (part.decode() for part in match.groups())
+        folder = None
+        if isinstance(source.files, DiskFiles) and there.find_package(package) is None:
+            folder = source.files.find_package(package, path) or source.files.guess_package(package, path)
+        file = None if folder is None else os.path.normpath(f"{folder}{rest}")
+        if file is None or file not in opened:
+            return match[0]
+        named.add(file)
+        return _relative(_placed_at(file, home), os.path.dirname(_placed_at(path, home)) or ".").encode()
+
+    return (_IN_PACKAGE.sub(by_place, text) if b"$(find " in text else text), named
+
+
+def _placed_at(path: str, home: str) -> str:
+    return _name_below(path, home) or path
 
 
 def _relative(path: str, home: str) -> str:
@@ -137,12 +171,20 @@ class Elsewhere(PackagesBehind, frozen=True):
         """The content of a path that :meth:`find` returned. Raises: OSError."""
         return self.package.read(path)
 
+    def find_package(self, name: str, beside: str = "") -> str | None:
+        """The folder of a package that is found from where the output is, or None."""
+        return self.around.find_package(name)
 
-def _is_same_robot(package: Package, source: Source, format: Format, mechanism: Mechanism, folder: str, kept: str) -> bool:
+    def guess_package(self, name: str, beside: str = "") -> str | None:
+        """No folder: where a package is guessed from tells nothing of where the output is read."""
+        return None
+
+
+def _is_same_robot(package: Package, source: Source, format: Format, mechanism: Mechanism, there: DiskFiles, kept: str) -> bool:
     """Whether the text is the robot where it is going to be, and holds what is kept inside of it."""
-    files = Elsewhere(source.files, PackageFiles(package, source.files), DiskFiles(Path(folder)))
+    files = Elsewhere(source.files, PackageFiles(package, source.files), there)
     try:
-        name = os.path.join(folder, os.path.basename(source.name))
+        name = os.path.join(there.base, os.path.basename(source.name))
         found, inside = pipeline.read_file(replace(source, name=name, data=package.main, files=files, kept=None), format, Report())
     except Refusal:
         return False

@@ -113,6 +113,32 @@ def test_what_is_included_from_above_goes_along_below_the_output(tmp_path: Path)
     assert differences(before, after) == []
 
 
+@pytest.mark.parametrize("is_known", [False, True])
+def test_a_package_that_is_not_found_from_the_output_gives_way_to_paths(is_known: bool, tmp_path: Path) -> None:
+    for folder in ("ws/cart_parts/urdf", "ws/cart/urdf", "out"):
+        (tmp_path / folder).mkdir(parents=True)
+    for package in ("cart", "cart_parts"):
+        (tmp_path / "ws" / package / "package.xml").write_text(f"<package><name>{package}</name></package>")
+    (tmp_path / "ws/cart_parts/urdf/wheel.xacro").write_text(WHEEL)
+    middle = WHEEL.replace(
+        '<xacro:macro name="wheel"', '<xacro:include filename="$(find cart_parts)/urdf/wheel.xacro"/>\n  <xacro:macro name="other"'
+    )
+    (tmp_path / "ws/cart/urdf/middle.xacro").write_text(middle)
+    text = XACRO.replace("parts/wheel.xacro", "$(find cart)/urdf/middle.xacro")
+    source = written(tmp_path / "ws/cart/urdf/cart.xacro", text)
+    hx.convert(source, tmp_path / "out/cart.xacro", search_path=[tmp_path / "ws"] if is_known else [])
+    files = {path.relative_to(tmp_path / "out").as_posix(): path.read_text() for path in (tmp_path / "out").rglob("*.xacro")}
+    if is_known:
+        assert files["cart.xacro"] == text
+        return
+    assert files == {
+        "cart.xacro": text.replace("$(find cart)/urdf/", ""),
+        "middle.xacro": middle.replace("$(find cart_parts)", "cart_parts"),
+        "cart_parts/urdf/wheel.xacro": WHEEL,
+    }
+    assert hx.diff(hx.load(source).mechanism, hx.load(tmp_path / "out/cart.xacro").mechanism) == ()
+
+
 @pytest.mark.parametrize("suffix", ["urdf", "usda"])
 @pytest.mark.parametrize("folder", ["", "other"])
 @pytest.mark.unread("HX101")
