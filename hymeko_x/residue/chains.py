@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from hymeko_x import codes
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import joint_edge
 from hymeko_x.ir.parts import Body, Joint
@@ -15,10 +16,11 @@ from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, rotate
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.parts import Dof, VertexPart
     from hymeko_x.ir.values import Pose
-    from hymeko_x.residue import Alignment, Change, Element, Fold, Residue
+    from hymeko_x.residue import Change, Element, Fold, Residue
 
 _DOFS = ("data", "dofs")
 _MOTION = frozenset({"kind", "axis", "anchor", "pitch", "ref"})
@@ -82,19 +84,20 @@ def _seen_from(dof: Dof, frame: Pose) -> Dof:
 # ---- chains that stay ------------------------------------------------------------------------------------------------------
 
 
-def open_chains(image: Mechanism, alignment: Alignment) -> tuple[Fold, ...]:
-    """The folds whose joints stay apart, since something new is on a body between them."""
-    joints = image.joints
-    return tuple([fold for fold in alignment.folds if fold.joint not in joints and all(key in joints for key in fold.chain)])
-
-
-def with_open_chains(residue: Residue, folds: Iterable[Fold], image: Mechanism) -> Residue:
-    """The residue, in which what is kept for the dofs of each of these joints, and for what refers to them, is for the joints of its chain.
+def with_open_chains(residue: Residue, image: Mechanism, report: Report) -> Residue:
+    """The residue, in which what is kept for the dofs of joints that stay chains, and for what refers to them, is for the joints of these.
 
     What a dof moves along is as it is in the chain.
     """
+    joints = image.joints
+    folds = [fold for fold in residue.alignment.folds if fold.joint not in joints and all(key in joints for key in fold.chain)]
+    if not folds:
+        return residue
+    for fold in folds:
+        message = f"{fold.joint} stays a chain of joints, since a body between them was edited"
+        report.note(codes.RESIDUE_SUPERSEDED, message, element=str(fold.joint))
     dofs: dict[Id, list[tuple[Id, Dof]]] = {
-        fold.joint: [(key, dof) for key in fold.chain for dof in image.joints[key].joint.dofs] for fold in folds
+        fold.joint: [(key, dof) for key in fold.chain for dof in joints[key].joint.dofs] for fold in folds
     }
     names = {joint: {dof.name or key.name: key for key, dof in row} for joint, row in dofs.items()}
     changes = [found for change in residue.changes if (found := _of_chain(change, dofs)) is not None]

@@ -19,7 +19,7 @@ from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.alike import URI, holds, is_alike, is_moved, without_surface
 from hymeko_x.residue.arcs import ARCS, with_edited_weights, with_own_ends, without_lost_material
 from hymeko_x.residue.balls import DOFS, hinges_of_balls, moved_and_apart
-from hymeko_x.residue.chains import open_chains, with_open_chains
+from hymeko_x.residue.chains import with_open_chains
 from hymeko_x.residue.colours import pieces_of_meshes, taken_apart, with_first_pieces
 from hymeko_x.residue.landmarks import renamed_since
 from hymeko_x.residue.parts import GEOMETRY, broken, capsules_of, parts_of
@@ -61,10 +61,7 @@ def restore(image: Mechanism, residue: Residue, report: Report) -> Restored:
     for new, old in names.items():
         report.note(codes.RESIDUE_FOLLOWED, f"{old} is called '{new.name}' now", element=str(new))
     aligned = realign(with_old_names(image, names), residue.alignment)
-    chains = open_chains(aligned, residue.alignment)
-    for fold in chains:
-        report.note(codes.RESIDUE_SUPERSEDED, f"{fold.joint} stays in several, since something is between them", element=str(fold.joint))
-    merge = _Merge(aligned, with_open_chains(residue, chains, aligned) if chains else residue, report)
+    merge = _Merge(aligned, with_open_chains(residue, aligned, report), report)
     merged = merge.result()
     elements = sum(key in merged.graph for key, _ in residue.additions)
     extras = sum(key == ROOT or key in merged.graph for key, _ in residue.sides.extras)
