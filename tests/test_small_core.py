@@ -64,6 +64,17 @@ def test_text_formats_need_the_core_alone(folder: Path) -> None:
         assert "HX011" not in done.stderr
 
 
+@pytest.mark.parametrize("there", ["there.xml", "there.hymeko", "there.sdf"])
+def test_edits_of_text_formats_come_home_with_the_core_alone(there: str, folder: Path) -> None:
+    (folder / "arm.urdf").write_text(hx.dumps(hx.loads(ROBOT, "urdf"), "urdf"))
+    assert run(folder, "convert", "arm.urdf", there).returncode == 0
+    text = (folder / there).read_text()
+    (folder / there).write_text(text.replace('mass="1"', 'mass="2"').replace("<mass>1<", "<mass>2<").replace("mass 1", "mass 2"))
+    done = run(folder, "update", "arm.urdf", there)
+    assert done.returncode == 0, done.stderr
+    assert '<mass value="2"/>' in (folder / "arm.urdf").read_text()
+
+
 SLOW_TO_LOAD = ("ast", "dataclasses", "difflib", "email", "hashlib", "importlib.metadata", "inspect", "lark", "lxml", "socket", "tempfile")
 """Modules that take milliseconds to load, and that no conversion of a sound text needs: together more than the conversion itself."""
 

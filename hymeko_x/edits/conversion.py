@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec.structs import replace
@@ -323,9 +324,8 @@ class Conversion:
         best = first
         for others in (self._other_files, self._other_bases, self._other_actuators, self._other_targets):
             for options, place in others(best):
-                guess = self._guess(options, place)
-                if guess.distance < best.distance:
-                    best = guess
+                with suppress(ModuleNotFoundError):  # of a target whose rules ask an engine that is not installed
+                    best = min(best, self._guess(options, place), key=lambda guess: guess.distance)
         return best
 
     def _other_files(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
