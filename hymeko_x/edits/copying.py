@@ -79,7 +79,7 @@ def _with_text(
         changed = text_with_edits(_with_placed(source, package), format, before, after, Report()).changed
     changed = {**changed, **_with_includes_below(source, changed, opened, there)}
     copies = {name: path for path in opened if (name := _below(path, home)) is not None and path not in changed}
-    files = {name: data for path, data in changed.items() if path != source.name and (name := _name_below(path, home)) is not None}
+    files = {_name_below(path, home): data for path, data in changed.items() if path != source.name}
     return replace(
         package, main=changed.get(source.name, source.data), files={**package.files, **files}, copies={**copies, **package.copies}
     )
@@ -130,20 +130,16 @@ def _without_packages(path: str, text: bytes, source: Source, opened: Collection
         if file is None or file not in opened:
             return match[0]
         named.add(file)
-        return _relative(_placed_at(file, home), os.path.dirname(_placed_at(path, home)) or ".").encode()
+        return _relative(_name_below(file, home), os.path.dirname(_name_below(path, home)) or ".").encode()
 
     return (_IN_PACKAGE.sub(by_place, text) if b"$(find " in text else text), named
-
-
-def _placed_at(path: str, home: str) -> str:
-    return _name_below(path, home) or path
 
 
 def _relative(path: str, home: str) -> str:
     return os.path.relpath(path, home).replace(os.sep, "/")
 
 
-def _name_below(path: str, home: str) -> str | None:
+def _name_below(path: str, home: str) -> str:
     """The path below a folder at which a file is put that may stand above it."""
     return _below(path, home) or re.sub(r"^(\.\./)+", "", _relative(path, home))
 

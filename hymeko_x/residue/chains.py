@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.values import Pose
     from hymeko_x.residue import Change, Element, Fold, Residue
 
-_DOFS = ("data", "dofs")
-_MOTION = frozenset({"kind", "axis", "anchor", "pitch", "ref"})
+MOTION = frozenset({"kind", "axis", "anchor", "pitch", "ref"})
 """Fields of a dof that are given in the frame of its joint."""
 
 
@@ -96,23 +95,24 @@ def with_open_chains(residue: Residue, image: Mechanism, report: Report) -> Resi
     for fold in folds:
         message = f"{fold.joint} stays a chain of joints, since a body between them was edited"
         report.note(codes.RESIDUE_SUPERSEDED, message, element=str(fold.joint))
-    dofs: dict[Id, list[tuple[Id, Dof]]] = {
-        fold.joint: [(key, dof) for key in fold.chain for dof in joints[key].joint.dofs] for fold in folds
+    dofs: dict[Id, list[tuple[Id, int]]] = {
+        fold.joint: [(key, place) for key in fold.chain for place in range(len(joints[key].joint.dofs))] for fold in folds
     }
-    names = {joint: {dof.name or key.name: key for key, dof in row} for joint, row in dofs.items()}
+    names = {joint: {joints[key].joint.dofs[place].name or key.name: key for key, place in row} for joint, row in dofs.items()}
     changes = [found for change in residue.changes if (found := _of_chain(change, dofs)) is not None]
     additions = [element._replace(part=_at_chain(element, names)) for element in residue.additions]
     return replace(residue, changes=tuple(changes), additions=tuple(additions))
 
 
-def _of_chain(change: Change, dofs: Mapping[Id, list[tuple[Id, Dof]]]) -> Change | None:
-    """A change of a dof as one of the dof in the chain; None for what only the one joint has."""
+def _of_chain(change: Change, dofs: Mapping[Id, list[tuple[Id, int]]]) -> Change | None:
+    """A change of a dof as one of the dof in the chain, where ``dofs`` are by joint and place; None for what only the one joint has."""
     row = dofs.get(change.element)
     if row is None:
         return change
     match change.path:
-        case ("data", "dofs", int(number), str(name), *rest) if number < len(row) and name not in _MOTION:
-            return change._replace(element=row[number][0], path=(*_DOFS, 0, name, *rest))
+        case ("data", "dofs", int(number), str(name), *rest) if number < len(row) and name not in MOTION:
+            joint, place = row[number]
+            return change._replace(element=joint, path=("data", "dofs", place, name, *rest))
     return None
 
 

@@ -19,7 +19,7 @@ from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.alike import URI, holds, is_alike, is_moved, without_surface
 from hymeko_x.residue.arcs import ARCS, with_edited_weights, with_own_ends, without_lost_material
 from hymeko_x.residue.balls import DOFS, hinges_of_balls, moved_and_apart
-from hymeko_x.residue.chains import with_open_chains
+from hymeko_x.residue.chains import MOTION, with_open_chains
 from hymeko_x.residue.colours import pieces_of_meshes, taken_apart, with_first_pieces
 from hymeko_x.residue.landmarks import renamed_since
 from hymeko_x.residue.parts import GEOMETRY, broken, capsules_of, parts_of
@@ -369,7 +369,9 @@ def _group(path: Path) -> str:
     match path:
         case ("arcs", *_):
             return "place"
-        case ("data", "dofs", int(), "axis" | "anchor" | "pitch" | "kind" | "ref", *_) | ("data", "dofs"):
+        case ("data", "dofs"):
+            return "place"
+        case ("data", "dofs", int(), str(name), *_) if name in MOTION:
             return "place"
         case ("data", "geometry", *_):
             return "geometry"
