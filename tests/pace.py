@@ -1,4 +1,4 @@
-"""How much longer one piece of work takes than another, on machines whose pace changes while they run."""
+"""How long a piece of work takes, in seconds or beside another one, on machines whose pace changes while they run."""
 
 from __future__ import annotations
 
@@ -21,6 +21,14 @@ def seconds(work: Callable[[], object]) -> float:
         return time.process_time() - start
     finally:
         gc.enable()
+
+
+def assert_within(bound: float, work: Callable[[], object]) -> None:
+    """The work takes at most so many seconds of processor time, in one round of several."""
+    taken: list[float] = []
+    while not taken or taken[-1] > bound:
+        assert len(taken) < ROUNDS, f"{', '.join(f'{time:.3f}' for time in taken)} s, not {bound:g} s at most"
+        taken.append(seconds(work))
 
 
 def assert_at_most(bound: float, work: Callable[[], object], yardstick: Callable[[], object], count: int = 1) -> None:

@@ -19,7 +19,7 @@ from hymeko_x.language.expressions import ExpressionError, evaluate
 from hymeko_x.language.parser import parse
 from hymeko_x.rewrite.context import Options
 from hymeko_x.source import Source
-from tests.pace import assert_at_most, seconds
+from tests.pace import assert_at_most, assert_within
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -116,7 +116,7 @@ def test_nothing_else_can_be_said_in_an_expression(text: str) -> None:
             value = None
         assert value is None or text.startswith(("(((", "---"))
 
-    assert seconds(work) < 0.5
+    assert_within(0.5, work)
 
 
 @settings(max_examples=200, deadline=None)
@@ -221,7 +221,7 @@ def test_a_long_run_of_anything_takes_linear_time(piece: str) -> None:
             with suppress(Refusal):
                 parse(text)
 
-        assert seconds(work) < 5.0
+        assert_within(5.0, work)
 
 
 # ---- size ---------------------------------------------------------------------------------------------------------------------
