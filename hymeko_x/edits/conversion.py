@@ -23,6 +23,7 @@ from hymeko_x.edits.differences import (
     is_of_extra,
     is_telling,
     is_value_of_shape,
+    is_weight,
     is_without_inertial,
 )
 from hymeko_x.edits.paths import with_same_paths
@@ -36,7 +37,7 @@ from hymeko_x.edits.unnamed import (
     with_same_numbers,
     without_counted_names,
 )
-from hymeko_x.edits.weights import heavier, with_computed_gains, with_least_masses, without_followed
+from hymeko_x.edits.weights import computed_weights, heavier, with_computed_gains, with_least_masses, without_followed
 from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, Mechanism
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
@@ -49,6 +50,7 @@ from hymeko_x.residue.merge import restore
 from hymeko_x.residue.originals import fetch_from
 from hymeko_x.residue.pairing import colour_of, other_names, reordered_shapes
 from hymeko_x.residue.realign import with_new_names, with_old_names
+from hymeko_x.rewrite.decimals import shorten_computed
 from hymeko_x.source import PackageFiles
 
 if TYPE_CHECKING:
@@ -150,9 +152,8 @@ class Conversion:
         if self._first_image is None:
             self._first_image, self._first_original = image, self.mechanism
         read = with_made_classes(self._read, image, self._first_original, self.format)
-        numbered = with_same_edges(
-            with_same_numbers(read, image, self._unnamed_bodies()), image, self._in_image(unnamed_edges(self.mechanism))
-        )
+        bodies, edges = (self._in_image(of(self.mechanism)) for of in (unnamed_bodies, unnamed_edges))
+        numbered = with_same_edges(with_same_numbers(read, image, bodies), image, edges)
         placed = with_same_paths(Contents(numbered, fetch_from(self.files)), Contents(image, fetch))
         edited = without_counted_names(with_same_assets(placed, image), image)
         sources = {key: self.mechanism.graph.vertices.get(self._homes.get(key, key)) for key, _ in edited.vertices(Actuator)}
@@ -210,15 +211,17 @@ class Conversion:
         numbered = reordered_shapes(edited, image)
         rest = diff(image, rename(edited, numbered), _SINGLE)
         left, heavy = frozenset(map(aim, rest)), self._heavier(image)
+        light = computed_weights(edited, heavy)
 
         def is_of_mass(edit: Difference) -> bool:
             return is_without_inertial(edit) and edit.element in heavy
 
         for edit in diff(image, edited, _SINGLE):
             is_there = edit.element.kind == "shape" and (numbered.get(edit.element, edit.element), *aim(edit)[1:]) not in left
+            is_arrived = edit.element in light and (is_weight(edit) or is_without_inertial(edit))
             if of_extras and not (is_of_extra(edit) or is_of_mass(edit)):
                 continue
-            if aim(edit) in (self._asked or ()) and not (has_other_forms(edit) or is_idle(edit) or is_there):
+            if aim(edit) in (self._asked or ()) and not (has_other_forms(edit) or is_idle(edit) or is_there or is_arrived):
                 yield self._homes.get(edit.element, edit.element), f"the edit did not arrive: {edit}"
         for edit in () if of_extras else rest:
             if edit.element not in touched and (is_value_of_shape(edit) or is_of_mass(edit)) and str(edit) not in known:
@@ -288,10 +291,6 @@ class Conversion:
             return True
         return old.kind == "contact" or not (_has_name(self.edited, new) or _has_name(image, old))
 
-    def _unnamed_bodies(self) -> set[Id]:
-        """The ids in the image of the bodies of ORIGINAL that have no name."""
-        return self._in_image(unnamed_bodies(self.mechanism))
-
     def _bare_bodies(self) -> set[Id]:
         """The ids in the image of the bodies of ORIGINAL that have no mass."""
         return self._in_image(key for key, body in self.mechanism.vertices(Body) if body.inertial is None or not body.inertial.mass)
@@ -306,8 +305,8 @@ class Conversion:
         bare = [key for key, body in self.edited.vertices(Body) if body.inertial is None and mine.get(key) != body]
         if not bare or formats.native_format(self.mechanism) is self.format:
             return self.edited
-        complete = pipeline.completed(self.edited, self.home, self.files, Report())
-        return self.edited.replace(vertices={key: complete.graph.vertices[key] for key in bare})
+        complete = pipeline.completed(self.edited, self.home, self.files, Report()).graph.vertices
+        return shorten_computed(self.edited.replace(vertices={key: complete[key] for key in bare}), self.edited)
 
     def _guess(self, options: Options, place: pipeline.Place) -> Guess:
         guess = self._converted(options, place)

@@ -13,7 +13,7 @@ from hymeko_x.rewrite.densities import Solids
 from hymeko_x.rewrite.inertia import LEAST, LEAST_TENSOR
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Container, Iterable, Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.solids import Solid
@@ -87,6 +87,12 @@ def heavier(image: Mechanism, edited: Mechanism, complete: Mechanism) -> set[Id]
         if other is not None and other.inertial is None and not math.isclose(_mass(body), _mass(whole), rel_tol=_SINGLE, abs_tol=LEAST):
             found.add(key)
     return found
+
+
+def computed_weights(edited: Mechanism, heavy: Container[Id]) -> set[Id]:
+    """The bodies without an inertial in EDITED, except the heavy ones, and their shapes: their masses came home as those of the bodies."""
+    bodies = [key for key, body in edited.vertices(Body) if body.inertial is None and key not in heavy]
+    return {*bodies, *(view.id for key in bodies for view in edited.shapes.get(key, ()))}
 
 
 def _mass(body: Body | None) -> float:

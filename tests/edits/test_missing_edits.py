@@ -294,3 +294,33 @@ def test_an_edit_of_what_a_fragment_of_the_original_describes_is_reported_where_
         f"{start}: removed <always_on>true</always_on>",
         f"{start}: added <always_on>false</always_on>",
     ]
+
+
+SLAB = """<robot name="r">
+  <link name="base"/>
+  <link name="slab">
+    <inertial>
+      <origin xyz="0 0 0.15"/>
+      <mass value="1.2"/>
+      <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.001"/>
+    </inertial>
+    <collision><origin xyz="0 0 0.15"/><geometry><box size="0.1 0.1 0.3"/></geometry></collision>
+  </link>
+  <joint name="j" type="continuous"><parent link="base"/><child link="slab"/><axis xyz="0 1 0"/></joint>
+</robot>
+"""
+
+
+@pytest.mark.unread("HX101", "HX103")
+def test_a_density_in_the_place_of_an_inertial_arrives_as_the_mass_that_the_engine_computes(tmp_path: Path) -> None:
+    original, there = tmp_path / "r.urdf", tmp_path / "r.xml"
+    original.write_text(SLAB)
+    hx.convert(original, there)
+    text = re.sub(r" *<inertial [^>]*>\n", "", there.read_text())
+    there.write_text(text.replace("<geom class", '<geom density="300" class'))
+    report = hx.update(original, there).report
+    assert [str(row) for row in report if row.code.id == "HX118"] == []
+    mass, tensor = '<mass value="0.9"/>', '<inertia ixx="0.0075" ixy="0" ixz="0" iyy="0.0075" iyz="0" izz="0.0015"/>'
+    assert original.read_text() == re.sub("<inertia ixx.*/>", tensor, SLAB).replace('<mass value="1.2"/>', mass)
+    again = hx.update(original, there)
+    assert (again.edits, [row for row in again.report if row.code.id == "HX118"]) == ((), [])
