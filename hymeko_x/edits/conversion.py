@@ -211,14 +211,14 @@ class Conversion:
         numbered = reordered_shapes(edited, image)
         rest = diff(image, rename(edited, numbered), _SINGLE)
         left, heavy = frozenset(map(aim, rest)), self._heavier(image)
-        light = computed_weights(edited, heavy)
+        arrived = computed_weights(image, edited, heavy)
 
         def is_of_mass(edit: Difference) -> bool:
             return is_without_inertial(edit) and edit.element in heavy
 
         for edit in diff(image, edited, _SINGLE):
             is_there = edit.element.kind == "shape" and (numbered.get(edit.element, edit.element), *aim(edit)[1:]) not in left
-            is_arrived = edit.element in light and (is_weight(edit) or is_without_inertial(edit))
+            is_arrived = edit.element in arrived and (is_weight(edit) or is_without_inertial(edit))
             if of_extras and not (is_of_extra(edit) or is_of_mass(edit)):
                 continue
             if aim(edit) in (self._asked or ()) and not (has_other_forms(edit) or is_idle(edit) or is_there or is_arrived):

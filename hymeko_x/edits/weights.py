@@ -89,9 +89,10 @@ def heavier(image: Mechanism, edited: Mechanism, complete: Mechanism) -> set[Id]
     return found
 
 
-def computed_weights(edited: Mechanism, heavy: Container[Id]) -> set[Id]:
-    """The bodies without an inertial in EDITED, except the heavy ones, and their shapes: their masses came home as those of the bodies."""
-    bodies = [key for key, body in edited.vertices(Body) if body.inertial is None and key not in heavy]
+def computed_weights(image: Mechanism, edited: Mechanism, heavy: Container[Id]) -> set[Id]:
+    """The bodies without an inertial in EDITED, and their shapes, whose masses came home: the image has them as those of the bodies."""
+    given = {key for key, body in image.vertices(Body) if body.inertial is not None and key not in heavy}
+    bodies = [key for key, body in edited.vertices(Body) if body.inertial is None and key in given]
     return {*bodies, *(view.id for key in bodies for view in edited.shapes.get(key, ()))}
 
 
