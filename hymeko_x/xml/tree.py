@@ -226,8 +226,11 @@ class TreeBuilder:
     def document(self) -> Document:
         """The finished document. Raises: ExpatError where the text is not well-formed."""
         self._handle_elements()
-        self._parser.Parse(self._data, True)
-        around = self._open[0].children
+        try:
+            self._parser.Parse(self._data, True)
+        finally:
+            self._release_parser()
+        around, self._open[0].children = self._open[0].children, []
         place = next(place for place, node in enumerate(around) if node.is_element)
         root = around[place]
         root.parent = None
@@ -266,6 +269,11 @@ class TreeBuilder:
         parser.EndElementHandler = end
         if _has_text(self._data):  # else there is nothing but blanks, of which a file has thousands
             parser.CharacterDataHandler = characters
+
+    def _release_parser(self) -> None:
+        """Part the parser and its handlers: they refer to each other, and would wait for the collector of cycles with the whole text."""
+        self._parser.StartElementHandler = self._parser.EndElementHandler = None
+        del self._parser
 
     def _aside(self, tag: str, text: str) -> None:
         if self._comments or len(self._open) < 3:

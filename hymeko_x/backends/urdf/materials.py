@@ -11,17 +11,17 @@ from hymeko_x.ir.values import numbers_text
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
 
 
 class Materials:
-    """The materials of a mechanism, and where each is defined; ``choice`` is the author's for a material."""
+    """The materials of a mechanism, and where each is defined: ``usual`` where its author chose no other place."""
 
-    def __init__(self, mechanism: Mechanism, choice: Callable[[Id], Defined]) -> None:
+    def __init__(self, mechanism: Mechanism, usual: Defined) -> None:
         self._mechanism = mechanism
-        self._choice = choice
+        self._usual = usual
         self._defined_before: set[Id] = set()
 
     @cached_property
@@ -57,7 +57,7 @@ class Materials:
             return own
         if self._first_of_name[material.name] != key:
             return own or Defined.INLINE
-        return self._choice(key)
+        return self._usual if own is None else own
 
     def robot_tag(self, key: Id) -> Tag:
         """The <material> of robot level that defines a material."""

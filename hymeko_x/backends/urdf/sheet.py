@@ -38,14 +38,15 @@ class UrdfSheet:
         self._prefix = f"{prefix}/" if prefix else ""
         style = mechanism.notation(ROOT, notations.STYLE) or Style()
         self._habits = style.habits
-        self.materials = Materials(mechanism, lambda key: self.choice(key, notations.DEFINED))
         self._usual = dict(style.usual)
+        self.materials = Materials(mechanism, self._usual_choice(notations.DEFINED))
 
     def choice(self, key: Id, choice: Notation[E]) -> E:
         """Which of several ways of writing an element's author chose: its own, else the file's, else the usual one."""
         own = self.mechanism.notation(key, choice)
-        if own is not None:
-            return own
+        return self._usual_choice(choice) if own is None else own
+
+    def _usual_choice(self, choice: Notation[E]) -> E:
         usual: Any = choice.read(self._usual.get(choice.name.removeprefix("urdf."), "")) or notations.USUAL[choice]
         return cast("E", usual)
 

@@ -88,6 +88,7 @@ def _keep_sections(root: Element, builder: MjcfBuilder) -> None:
     """Keep comments and the sections that the IR cannot represent, in order; others refer to them."""
     for child in root.detach(COMMENT, *KEPT_SECTIONS):
         builder.keep_at_root(child)
+        child.release()
 
 
 def _take_carried(root: Element) -> Iterator[str]:

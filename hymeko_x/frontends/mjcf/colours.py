@@ -58,8 +58,11 @@ def with_mean_colours(mechanism: Mechanism, *, files: Files = NO_FILES) -> Mecha
 
 def _patterned(mechanism: Mechanism, files: Files) -> dict[Id, tuple[Id, Rgba]]:
     """The layers that colour a material with a pattern: the material, and the mean colour of the pattern."""
+    patterns = [key for key, texture in mechanism.vertices(Texture) if texture.uri is None]
+    if not patterns:
+        return {}
     classes = Classes(parse_text(extra.text) for extra in mechanism.extras.get(ROOT, ()) if extra.text.startswith("<default"))
-    made = {key: _attributes(mechanism, key, classes) for key, texture in mechanism.vertices(Texture) if texture.uri is None}
+    made = {key: _attributes(mechanism, key, classes) for key in patterns}
     settings = settings_of([parse_text(text).attributes for text in compilers(mechanism)])
     means = {key: _mean(texture) or _mean_of_sides(texture, settings, files) for key, texture in made.items()}
     found: dict[Id, tuple[Id, Rgba]] = {}
