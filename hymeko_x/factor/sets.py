@@ -6,15 +6,14 @@ exact and deterministic, as :mod:`hymeko_x.factor` is for forms with an order an
 
 from __future__ import annotations
 
-from collections import Counter
 from heapq import nsmallest
-from itertools import chain, combinations
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
 Pair = tuple[str, str]
 """The name and the text of a field."""
@@ -71,10 +70,11 @@ def share(rows: Sequence[Row], costs: Costs) -> list[Shared]:
 
 def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], list[int]] | None:
     """The set that saves most, and the places of the rows that have all of it."""
-    if _most_saved(rows, costs) < costs.definition + costs.least:
+    owners = _owners(rows)
+    if _most_saved(rows, owners, costs, use) < costs.least:
         return None
     best, most = None, costs.least - 1
-    for pairs, members in _ranked(rows):
+    for pairs, members in _ranked(rows, owners):
         fields = sum([len(name) + len(text) + costs.field for name, text in pairs])
         saved = (len(members) - 1) * fields - len(members) * use - costs.definition
         if saved > most:
@@ -82,21 +82,25 @@ def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], lis
     return None if best is None else (best[0], sorted(best[1]))
 
 
-def _most_saved(rows: list[Row], costs: Costs) -> int:
-    """More than any one set can save before its definition is paid: all fields of a row, each written once instead of every time."""
-    counts = Counter(chain.from_iterable(rows))
-    saved = {pair: (count - 1) * (len(pair[0]) + len(pair[1]) + costs.field) for pair, count in counts.items()}
-    return max([sum([saved[pair] for pair in row]) for row in rows])
+def _most_saved(rows: list[Row], owners: Mapping[Pair, Members], costs: Costs, use: int) -> int:
+    """No set saves more than this: in any row, the fields that at least as many rows have, for every number of rows."""
+    counts = {pair: (len(members), len(pair[0]) + len(pair[1]) + costs.field) for pair, members in owners.items()}
+    most = 0
+    for row in {tuple(sorted([counts[pair] for pair in row if pair in counts], reverse=True)) for row in rows}:
+        fields = 0
+        for count, letters in row:
+            fields += letters
+            most = max(most, (count - 1) * fields - count * use)
+    return most - costs.definition
 
 
 def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:
     """Sets of fields that rows share, by about how much they save, the best first. Near linear in the number of fields."""
-    return [shared for shared, _ in _ranked(rows)]
+    return [shared for shared, _ in _ranked(rows, _owners(rows))]
 
 
-def _ranked(rows: Sequence[Row]) -> list[tuple[frozenset[Pair], Members]]:
-    """The same with the rows that have all of a set."""
-    owners = _owners(rows)
+def _ranked(rows: Sequence[Row], owners: Mapping[Pair, Members]) -> list[tuple[frozenset[Pair], Members]]:
+    """The same with the rows that have all of a set; ``owners`` are those of each field."""
 
     def common(members: Members) -> frozenset[Pair]:
         """All fields that these rows share: a subset of those of any one of them."""

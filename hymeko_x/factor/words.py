@@ -14,7 +14,7 @@ _KINDS = "joint link body geom shape mesh part visual collision frame robot moto
 _PLAIN: frozenset[str] = frozenset(f"{_SIDES} {_KINDS}".split())
 """Words that say on which side an element is, or of which kind; they tell nothing of what it is."""
 
-_BETWEEN_WORDS = re.compile(r"[\W_\d]+")
+_WORD = re.compile(r"[^\W_\d]+")
 _HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _SIDE = re.compile(r"(?:left|right)(?=[a-z]{3})", re.IGNORECASE)
 _LIMBS = {
@@ -27,13 +27,13 @@ _LIMB_OF = {word: limb for limb, words in _LIMBS.items() for word in words.split
 
 def words_of(name: str) -> list[str]:
     """The words of a name in order, each once: those between signs and digits, as they are written."""
-    return list(dict.fromkeys([word for word in _BETWEEN_WORDS.split(name) if word]))
+    return list(dict.fromkeys(_WORD.findall(name)))
 
 
 def telling_words(name: str, plain: Collection[str] = ()) -> list[str]:
     """The words of a name that tell what it is, without ``plain`` ones: ``finger`` of ``left_finger1`` and of ``leftFinger``."""
-    words = [_SIDE.sub("", part) for word in words_of(name) for part in _HUMP.split(word)]
-    return [word for word in dict.fromkeys(words) if len(word) > 2 and word.lower() not in _PLAIN and word not in plain]
+    parts = _SIDE.sub("", _HUMP.sub(" ", " ".join(_WORD.findall(name)))).split()
+    return [word for word in dict.fromkeys(parts) if len(word) > 2 and word.lower() not in _PLAIN and word not in plain]
 
 
 def limb(names: Iterable[str]) -> str:
@@ -85,14 +85,13 @@ def _shared(split: Sequence[Sequence[str]]) -> str:
     return "_".join([word for word in split[0] if word in shared])
 
 
-def by_meaning(names: Sequence[str], least: int, plain: Collection[str] = ()) -> list[tuple[str, list[int]]]:
+def by_meaning(split: Sequence[Sequence[str]], least: int) -> list[tuple[str, list[int]]]:
     """Groups of at least so many names with a meaning, by their places: all of them, or those that share a telling word.
 
-    A name is in one group at most; the largest groups come first.
+    ``split`` are the telling words of each name. A name is in one group at most; the largest groups come first.
     """
-    split = [telling_words(name, plain) for name in names]
-    if len(names) >= least and (found := _shared(split)):
-        return [(found, list(range(len(names))))]
+    if len(split) >= least and (found := _shared(split)):
+        return [(found, list(range(len(split))))]
     left = dict(enumerate(split))
     groups: list[tuple[str, list[int]]] = []
     while True:

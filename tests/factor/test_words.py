@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hymeko_x.factor.words import by_meaning, common_words, meaning, words_of_all
+from hymeko_x.factor.words import by_meaning, common_words, meaning, telling_words, words_of_all
 
 
 def test_a_set_is_called_after_the_words_that_names_share() -> None:
@@ -22,6 +22,7 @@ def test_sides_kinds_and_numbers_tell_nothing_of_what_an_element_is() -> None:
 def test_names_without_a_common_meaning_are_grouped_by_those_that_they_have() -> None:
     names = ["left_shoulder_pitch", "left_shoulder_roll", "left_elbow", "right_shoulder_pitch", "right_elbow", "torso"]
     names.append("right_shoulder_roll")
-    assert by_meaning(names, 3) == [("shoulder", [0, 1, 3, 6])]
-    assert by_meaning(names, 2) == [("shoulder", [0, 1, 3, 6]), ("elbow", [2, 4])]
-    assert by_meaning(["joint1", "joint2", "joint3"], 3) == []
+    split = [telling_words(name) for name in names]
+    assert by_meaning(split, 3) == [("shoulder", [0, 1, 3, 6])]
+    assert by_meaning(split, 2) == [("shoulder", [0, 1, 3, 6]), ("elbow", [2, 4])]
+    assert by_meaning([telling_words(name) for name in ("joint1", "joint2", "joint3")], 3) == []

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct, field
 
 from hymeko_x.factor.sets import Costs, share
-from hymeko_x.factor.words import by_meaning, limb, words_of_all
+from hymeko_x.factor.words import by_meaning, limb, telling_words, words_of_all
 from hymeko_x.formats.mjcf import CLASSES, MAIN
 from hymeko_x.formats.mjcf.classes import PARTIAL, Classes
 from hymeko_x.formats.mjcf.roles import ATTRIBUTES
@@ -145,10 +145,11 @@ def _share_among_some(tag: str, own_class: str | None, group: list[Tag], default
     """Classes for sets of attributes that several elements share, with everything else that those have in common."""
     start = len(defaults.classes)
     found = share([_reasons(element) for element in group], _COSTS if own_class is None else _REFINING)
-    plain = words_of_all(_names(group)) if found and len(group) > _FEWEST else frozenset[str]()
+    split = _telling_words(group) if found else []
     for shared in found:
         members = [group[member] for member in shared.members]
-        groups = [(words, [members[place] for place in places]) for words, places in by_meaning(_names(members), _FEWEST, plain)]
+        meant = by_meaning([split[member] for member in shared.members], _FEWEST)
+        groups = [(words, [members[place] for place in places]) for words, places in meant]
         for words, alike in _as_one_limb(groups) or groups:
             _make_class(tag, own_class, words, alike, defaults)
     order = {name: place for place, element in reversed([*enumerate(group)]) if (name := element.attributes.get("class"))}
@@ -160,6 +161,13 @@ def _as_one_limb(groups: list[tuple[str, list[Tag]]]) -> list[tuple[str, list[Ta
     everyone = [element for _, alike in groups for element in alike]
     word = limb(_names(everyone)) if len(groups) > 1 else ""
     return [(word, everyone)] if word and all(_common(alike) == _common(everyone) for _, alike in groups) else []
+
+
+def _telling_words(group: list[Tag]) -> list[list[str]]:
+    """The words of each element's name that tell what it is, without those that all of them have."""
+    names = _names(group)
+    plain = words_of_all(names) if len(names) > _FEWEST else frozenset[str]()
+    return [telling_words(name, plain) for name in names]
 
 
 def _common(elements: list[Tag]) -> frozenset[tuple[str, str]]:
