@@ -83,15 +83,9 @@ def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], lis
 
 
 def _most_saved(rows: list[Row], owners: Mapping[Pair, Members], costs: Costs, use: int) -> int:
-    """No set saves more than this: in any row, the fields that at least as many rows have, for every number of rows."""
-    counts = {pair: (len(members), len(pair[0]) + len(pair[1]) + costs.field) for pair, members in owners.items()}
-    most = 0
-    for row in {tuple(sorted([counts[pair] for pair in row if pair in counts], reverse=True)) for row in rows}:
-        fields = 0
-        for count, letters in row:
-            fields += letters
-            most = max(most, (count - 1) * fields - count * use)
-    return most - costs.definition
+    """No set saves more than this: all fields of a row, each written once instead of every time, and two rows that name the set."""
+    saved = {pair: (len(members) - 1) * (len(pair[0]) + len(pair[1]) + costs.field) for pair, members in owners.items()}
+    return max([sum([saved[pair] for pair in row if pair in saved]) for row in rows]) - 2 * use - costs.definition
 
 
 def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:
