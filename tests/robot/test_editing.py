@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import mujoco
+import numpy as np
 import pytest
+import trimesh
 from msgspec.structs import replace
 
 import hymeko_x as hx
@@ -16,6 +18,7 @@ from tests.robot.robots import arm, claw, hand
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from hymeko_x.robot.editing import Editing
 
@@ -63,6 +66,18 @@ def test_what_is_added_is_there_in_mujoco() -> None:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     assert data.site("pen").xpos == pytest.approx(e.robot.frames["pen"].world_pose().xyz, abs=1e-12)
+
+
+def test_a_mesh_that_is_added_comes_from_its_file(tmp_path: Path) -> None:
+    trimesh.creation.box((0.1, 0.2, 0.3)).export(tmp_path / "crate.stl")
+    file = tmp_path / "stand.urdf"
+    file.write_text('<robot name="stand"><link name="base"/></robot>')
+    with hx.load(file).edit() as e:
+        e.add_mesh("crate", "crate.stl", scale=(2, 1, 1))
+        e.add_shape("load", "crate", on="base", at=(0, 0, 1))
+    model = e.robot.to_mujoco()
+    assert np.ptp(model.mesh_vert, axis=0) == pytest.approx([0.2, 0.2, 0.3])
+    assert model.geom("load").pos == pytest.approx([0, 0, 1])
 
 
 def test_a_body_goes_with_all_that_is_below_and_on_it() -> None:
