@@ -106,7 +106,7 @@ def _noted_pose(mechanism: Mechanism, body: Id) -> Pose | None:
 
 
 _ROUNDING = 1e-12
-"""Of the largest moment: a thin rod has no other about its axis."""
+"""Of the largest moment: a thin rod has no other about its axis, where the rules of USD demand one above 0."""
 
 
 def write_inertial(spec: Any, inertial: Inertial, com: Vec3, *, is_neutral: bool = False) -> None:
@@ -121,8 +121,9 @@ def write_inertial(spec: Any, inertial: Inertial, com: Vec3, *, is_neutral: bool
     if inertial.tensor is None:
         return
     moments, quat = principal(inertial)
-    if max(moments) > 0.0 and min(moments) >= -_ROUNDING * max(moments):  # UsdPhysics takes three zeros for "not authored"
-        put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*(max(moment, 0.0) for moment in moments)))
+    least = _ROUNDING * max(moments)
+    if least > 0.0 and min(moments) >= -least:  # UsdPhysics takes three zeros for "not authored"
+        put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*(max(moment, least) for moment in moments)))
         put(spec, "physics:principalAxes", T.Quatf, quatf(quat))
     if is_neutral:
         return
