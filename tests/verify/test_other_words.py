@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 import hymeko_x as hx
+from hymeko_x.formats.mjcf.schema import schema
+from hymeko_x.verify.readers.mjcf.constraints import SENSOR_KINDS
 
 Write = Callable[[str, str], Path]
 
@@ -28,6 +30,14 @@ BALL_MJCF = """<mujoco>
   </worldbody>
 </mujoco>"""
 BALL = '<joint name="ankle" type="ball" pos="0 0 0.01"/>'
+LEG = """<mujoco>
+  <worldbody>
+    <geom name="a" type="sphere" size="0.1"/>
+    <body name="leg"><joint name="knee" axis="0 1 0"/><geom name="b" type="sphere" size="0.1"/></body>
+  </worldbody>
+  <actuator><motor name="m" joint="knee"/></actuator>
+  <sensor>{sensors}</sensor>
+</mujoco>"""
 HINGES = "".join(f'<joint name="ankle_{k}" axis="{axis}" pos="0 0 0.01"/>' for k, axis in enumerate(("1 0 0", "0 1 0", "0 0 1")))
 
 
@@ -54,6 +64,22 @@ def test_a_shorter_capsule_is_found_through_its_parts(written: Write, tmp_path: 
     shorter = BALL_MJCF.replace('size="0.05 0.1"', 'size="0.05 0.09"')
     verdict = hx.verify(written("mjcf", BALL_MJCF), as_urdf(written, tmp_path, shorter))
     assert "collision shapes, size and pose" in {check.quantity for check in verdict.failed}
+
+
+def test_every_element_of_sensor_is_a_kind_that_mjcf_has() -> None:
+    """MuJoCo's own list of kinds calls some of them otherwise."""
+    elements = {path.split("/")[1] for path in schema().elements if path.startswith("sensor/")}
+    assert len(elements) > 40
+    assert elements - SENSOR_KINDS == set()
+
+
+def test_sensors_that_mujocos_list_calls_otherwise_are_the_same_in_hymeko(written: Write, tmp_path: Path) -> None:
+    sensors = '<distance geom1="a" geom2="b"/><jointactuatorfrc name="push" joint="knee"/>'
+    original = written("mjcf", LEG.format(sensors=sensors))
+    hx.convert(original, tmp_path / "leg.hymeko")
+    verdict = hx.verify(original, tmp_path / "leg.hymeko")
+    assert verdict.is_same
+    assert verdict.gaps == ()
 
 
 def test_three_hinges_are_no_ball_where_both_formats_have_balls(written: Write) -> None:

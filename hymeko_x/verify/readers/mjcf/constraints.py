@@ -112,9 +112,20 @@ def read_actuators(compiled: Any) -> Iterator[Record]:
         yield Record(compiled.actuator(i).name or None, words, _actuator_numbers(compiled, i))
 
 
+_ELEMENTS = {
+    "jointactfrc": "jointactuatorfrc",
+    "tendonactfrc": "tendonactuatorfrc",
+    "geomdist": "distance",
+    "geomnormal": "normal",
+    "geomfromto": "fromto",
+}
+"""The elements of <sensor> that mjtSensor calls otherwise."""
+
+
 def _kind(sensor: Any) -> str:
-    """MuJoCo's name of a kind of sensor, as it stands in MJCF."""
-    return str(sensor.name).removeprefix("mjSENS_").lower()
+    """A kind of sensor by the name of its element in MJCF."""
+    name = str(sensor.name).removeprefix("mjSENS_").lower()
+    return _ELEMENTS.get(name, name)
 
 
 SENSOR_KINDS = frozenset(map(_kind, mujoco.mjtSensor.__members__.values()))
