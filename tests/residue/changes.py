@@ -96,8 +96,9 @@ _ANYWAY = (("moves", Ref(("hinge",))), ("axis", Ref(("Z",))))
 def _around(item: Any) -> Iterator[tuple[str, tuple[Any, ...]]]:
     """What may stand instead of an item: nothing, or the item with one change in it. Depth is that of the text."""
     if isinstance(item, Node):
-        own = f"without {item.name}"  # a joint moves the body that bears its name anyway
-        yield from ((f"{item.name}: {what}", (item._replace(items=items),)) for what, items in _inside(item.items) if what != own)
+        bodies = (item.name, item.name.replace("joint", "link"), item.name.removesuffix("_joint"))
+        own = {f"without {body}" for body in bodies}  # a joint moves the body that bears its name anyway
+        yield from ((f"{item.name}: {what}", (item._replace(items=items),)) for what, items in _inside(item.items) if what not in own)
     elif isinstance(item, Field):
         if (item.name, item.value) not in _ANYWAY:
             yield f"without {item.name}", ()

@@ -20,6 +20,7 @@ import numpy as np
 
 from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.rewrite import Options
@@ -48,6 +49,9 @@ def silent_changes(
         yield change.what, silent
 
 
+_ROUNDING = Tolerance(absolute=1e-14)
+
+
 class Conversions:
     """All that a user sees of the pure conversions of a text; places in the source do not count."""
 
@@ -67,10 +71,10 @@ class Conversions:
         return self.written(target) == other.written(target) and self.lost(target) == other.lost(target)
 
     def only_words_it_otherwise_than(self, other: Conversions) -> bool:
-        """Whether the reader saw the change, and kept it as a notation of a robot whose values are all the same."""
+        """Whether the reader saw the change, and kept it as a notation of a robot whose values are all the same, to rounding."""
         if isinstance(self._robot, tuple) or isinstance(other._robot, tuple):
             return False
-        return self._robot == other._robot and bool(unequal(self._robot, other._robot))
+        return diff(self._robot, other._robot, _ROUNDING) == () and bool(unequal(self._robot, other._robot))
 
     def written(self, target: str) -> Outcome:
         """The files of a format and the diagnostics."""
