@@ -33,7 +33,7 @@ def changes(data: bytes, format: str) -> Iterator[Change]:
 
 
 def _xml(data: bytes) -> Iterator[Change]:
-    root = etree.fromstring(data, etree.XMLParser(remove_comments=True, remove_pis=True, huge_tree=True))
+    root = etree.fromstring(data, etree.XMLParser(remove_comments=True, remove_pis=True, huge_tree=True, recover=True))
     yield Change("nothing", etree.tostring(root))
     tree = root.getroottree()
     for element in list(root.iter()):
@@ -42,7 +42,7 @@ def _xml(data: bytes) -> Iterator[Change]:
             element.set(name, other_text(old))
             yield Change(f"{path}/@{name}: {old} -> {element.get(name)}", etree.tostring(root))
             element.set(name, old)
-        if element is not root and not _says_nothing(element):
+        if element is not root and not _says_nothing(element) and not _is_repeated(element):
             parent, place = element.getparent(), element.getparent().index(element)
             parent.remove(element)
             yield Change(f"without {path}", etree.tostring(root))
@@ -54,6 +54,15 @@ def _says_nothing(element: Any) -> bool:
     if element.tag == "axis" and [float(number) for number in _NUMBER.findall(element.get("xyz", ""))] == [1.0, 0.0, 0.0]:
         return True
     return len(element) == 0 and bool(element.attrib) and all(re.fullmatch(r"[-+0.\s]+", text) for text in element.attrib.values())
+
+
+def _is_repeated(element: Any) -> bool:
+    """Whether an element is the colour of a material that has the same colour in another shape as well."""
+    material = element.getparent()
+    if element.tag != "color" or material.get("name") is None:
+        return False
+    named = [other for other in element.getroottree().iter("material") if other.get("name") == material.get("name")]
+    return sum(color.get("rgba") == element.get("rgba") for other in named for color in other.iter("color")) > 1
 
 
 def other_text(text: str) -> str:
