@@ -36,7 +36,7 @@ LEG = """<mujoco>
     <body name="leg"><joint name="knee" axis="0 1 0"/><geom name="b" type="sphere" size="0.1"/></body>
   </worldbody>
   <actuator><motor name="m" joint="knee"/></actuator>
-  <sensor>{sensors}</sensor>
+  <sensor><distance geom1="a" geom2="b"/><jointactuatorfrc name="push" joint="knee"/></sensor>
 </mujoco>"""
 HINGES = "".join(f'<joint name="ankle_{k}" axis="{axis}" pos="0 0 0.01"/>' for k, axis in enumerate(("1 0 0", "0 1 0", "0 0 1")))
 
@@ -74,8 +74,7 @@ def test_every_element_of_sensor_is_a_kind_that_mjcf_has() -> None:
 
 
 def test_sensors_that_mujocos_list_calls_otherwise_are_the_same_in_hymeko(written: Write, tmp_path: Path) -> None:
-    sensors = '<distance geom1="a" geom2="b"/><jointactuatorfrc name="push" joint="knee"/>'
-    original = written("mjcf", LEG.format(sensors=sensors))
+    original = written("mjcf", LEG)
     hx.convert(original, tmp_path / "leg.hymeko")
     verdict = hx.verify(original, tmp_path / "leg.hymeko")
     assert verdict.is_same
