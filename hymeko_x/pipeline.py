@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from msgspec import Struct
@@ -360,7 +359,7 @@ def reader(format: Format) -> Reader:
     if format.frontend is None:
         readable = ", ".join(row.name for row in formats.FORMATS if row.frontend)
         raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} cannot be read", hint=f"readable: {readable}")
-    native: Reader = import_module(format.frontend).read
+    native: Reader = formats.loaded(format.frontend).read
 
     def read_without_mark(source: Source, report: Report) -> Reading:
         found = native(source, report)
@@ -377,5 +376,5 @@ def writer(format: Format) -> Writer:
     if format.backend is None:
         writable = ", ".join(row.name for row in formats.FORMATS if row.backend)
         raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} cannot be written", hint=f"writable: {writable}")
-    found: Writer = import_module(format.backend).write
+    found: Writer = formats.loaded(format.backend).write
     return found

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import posixpath
 import re
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hymeko_x.assets.archives import inside
@@ -37,7 +36,7 @@ class Shelf:
         self.mode = mode
         self.within = within
         self.around = around
-        self.is_from_archive = inside(Path(origin)) is not None
+        self.is_from_archive = inside(origin) is not None
         self.files: dict[str, bytes] = {}
         self.copies: dict[str, str] = {}
         self._out_dir = out_dir

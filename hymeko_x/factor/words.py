@@ -30,9 +30,22 @@ def words_of(name: str) -> list[str]:
     return list(dict.fromkeys(_WORD.findall(name)))
 
 
-def telling_words(name: str, plain: Collection[str] = ()) -> list[str]:
-    """The words of a name that tell what it is, without ``plain`` ones: ``finger`` of ``left_finger1`` and of ``leftFinger``."""
-    parts = _SIDE.sub("", _HUMP.sub(" ", " ".join(_WORD.findall(name)))).split()
+def telling_words(name: str) -> list[str]:
+    """The words of a name that tell what it is: ``finger`` of ``left_finger1`` and of ``leftFinger``."""
+    return _telling(_WORD.findall(name), ())
+
+
+def distinguishing_words(names: Sequence[str]) -> list[list[str]]:
+    """The telling words of each of these names, without the words that all of them have."""
+    split = [_WORD.findall(name) for name in names]
+    of_all = frozenset(split[0]).intersection(*split[1:])
+    return [_telling(words, of_all) for words in split]
+
+
+def _telling(words: Sequence[str], plain: Collection[str]) -> list[str]:
+    """Those of a name's words that tell what it is, without ``plain`` ones."""
+    text = " ".join(words)
+    parts = _SIDE.sub("", text if text.islower() else _HUMP.sub(" ", text)).split()
     return [word for word in dict.fromkeys(parts) if len(word) > 2 and word.lower() not in _PLAIN and word not in plain]
 
 
@@ -68,15 +81,9 @@ def common_words(names: Sequence[str]) -> str:
     return shared if any(len(word) > 2 for word in shared.split("_")) else ""
 
 
-def words_of_all(names: Iterable[str]) -> frozenset[str]:
-    """The words that every one of these names has: they tell none of them from the others."""
-    split = [frozenset(words_of(name)) for name in names]
-    return frozenset.intersection(*split) if split else frozenset()
-
-
-def meaning(names: Sequence[str], plain: Collection[str] = ()) -> str:
+def meaning(names: Sequence[str]) -> str:
     """What all of these are, by the telling words that their names share; empty for none."""
-    return _shared([telling_words(name, plain) for name in names])
+    return _shared([telling_words(name) for name in names])
 
 
 def _shared(split: Sequence[Sequence[str]]) -> str:

@@ -27,7 +27,7 @@ W = TypeVar("W")
 T = TypeVar("T")
 
 
-class Arc(Struct, Generic[K, W], frozen=True):
+class Arc(Struct, Generic[K, W], frozen=True, gc=False):
     """One end of an edge: whom it points at, in which direction, with what weight and in which role."""
 
     target: K
@@ -36,7 +36,7 @@ class Arc(Struct, Generic[K, W], frozen=True):
     role: str = ""
 
 
-class Edge(Struct, Generic[K, E, W], frozen=True):
+class Edge(Struct, Generic[K, E, W], frozen=True, gc=False):
     """A relation: what it means, and its arcs in order."""
 
     data: E

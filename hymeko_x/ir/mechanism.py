@@ -44,7 +44,7 @@ RobotEdge = Edge[Id, parts.EdgePart, parts.Weight]
 RobotGraph = Hypergraph[Id, parts.VertexPart, parts.EdgePart, parts.Weight]
 
 
-class Extra(Noted, frozen=True):
+class Extra(Noted, frozen=True, gc=False):
     """Text of one format about an element that the IR cannot represent, verbatim.
 
     ``path`` leads from the element's own node to where it stood: ``""`` is the node itself, ``limit`` its child of that

@@ -1,7 +1,8 @@
 """The parts that vertices and edges of a mechanism carry: frozen values.
 
 A property is not a connection: no part names another element; all connections are arcs. Which arcs an edge has,
-with which sign, weight and role, stands in the docstring of its part.
+with which sign, weight and role, stands in the docstring of its part. So parts are in no cycle, and Python's collector of
+cycles need not look at them (``gc=False``).
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ Rgba = tuple[float, float, float, float]
 # ---- vertices: bodies ----------------------------------------------------------------------------------------------------
 
 
-class Inertial(Noted, frozen=True):
+class Inertial(Noted, frozen=True, gc=False):
     """Mass in kg, centre of mass in m in the body frame, inertia tensor in kg m^2 about it in body axes. None = unspecified.
 
     ``written`` remembers the turned axes (``Pose.written`` style rotation) and the tensor as given in them.
@@ -44,24 +45,24 @@ class Inertial(Noted, frozen=True):
     written: InertialWritten | None = None
 
 
-class InertialWritten(Struct, frozen=True, forbid_unknown_fields=True):
+class InertialWritten(Struct, frozen=True, gc=False, forbid_unknown_fields=True):
     """An inertia tensor as its author gave it: in the axes of ``frame`` (a pose at the centre of mass)."""
 
     frame: Pose
     tensor: Tensor
 
 
-class Body(Struct, frozen=True):
+class Body(Struct, frozen=True, gc=False):
     """A rigid body. ``inertial`` None means that its mass is unspecified."""
 
     inertial: Inertial | None = None
 
 
-class World(Struct, frozen=True):
+class World(Struct, frozen=True, gc=False):
     """The inertial frame. Exactly one vertex, ``WORLD``, carries it; its shapes are the world's geometry."""
 
 
-class Frame(Struct, frozen=True):
+class Frame(Struct, frozen=True, gc=False):
     """A named pose on a body (an MJCF site, an SDF frame): a :class:`Mount` places it. ``size`` in m is for display."""
 
     size: tuple[float, ...] = ()
@@ -70,7 +71,7 @@ class Frame(Struct, frozen=True):
 # ---- vertices: appearance and assets --------------------------------------------------------------------------------------------
 
 
-class Material(Struct, frozen=True):
+class Material(Struct, frozen=True, gc=False):
     """A surface. ``name`` is what the author called it (ids are unique, names need not be); None colours are unspecified."""
 
     name: str | None = None
@@ -83,14 +84,14 @@ class Material(Struct, frozen=True):
     roughness: float | None = None
 
 
-class Texture(Struct, frozen=True):
+class Texture(Struct, frozen=True, gc=False):
     """An image, by uri as the source wrote it; a :class:`Layer` puts it on a material."""
 
     uri: str | None = None
     name: str | None = None
 
 
-class Mesh(Struct, frozen=True):
+class Mesh(Struct, frozen=True, gc=False):
     """A triangle mesh: a file by uri as the source wrote it, or inline data; ``scale`` applies to its points.
 
     ``vertices`` and ``faces`` are flat (3 numbers each); ``name`` is set where the format names its meshes. ``texcoords`` are
@@ -119,14 +120,14 @@ MESH_POINTS = ("vertices", "faces", "texcoords", "texfaces", "normals", "normalf
 # ---- vertices: things on a mechanism -----------------------------------------------------------------------------------------
 
 
-class Actuator(Struct, frozen=True):
+class Actuator(Struct, frozen=True, gc=False):
     """What drives: ``kind`` (motor, position, velocity, transmission, muscle, ...) and its parameters in order."""
 
     kind: str = "motor"
     parameters: Parameters = ()
 
 
-class Sensor(Struct, frozen=True):
+class Sensor(Struct, frozen=True, gc=False):
     """What measures: ``kind`` (imu, force, jointpos, ...), update ``rate`` in Hz, and its parameters in order."""
 
     kind: str
@@ -134,7 +135,7 @@ class Sensor(Struct, frozen=True):
     parameters: Parameters = ()
 
 
-class Camera(Struct, frozen=True):
+class Camera(Struct, frozen=True, gc=False):
     """A camera looking along its own -z, y up. ``fovy`` is the vertical field of view in rad."""
 
     fovy: float | None = None
@@ -142,7 +143,7 @@ class Camera(Struct, frozen=True):
     parameters: Parameters = ()
 
 
-class Light(Struct, frozen=True):
+class Light(Struct, frozen=True, gc=False):
     """A light shining along its own -z. ``kind``: spot, directional, point, image."""
 
     kind: str = "spot"
@@ -150,7 +151,7 @@ class Light(Struct, frozen=True):
     parameters: Parameters = ()
 
 
-class PoseSet(Struct, frozen=True):
+class PoseSet(Struct, frozen=True, gc=False):
     """A named configuration (keyframe, group state): a :class:`Stance` edge has the value of each joint. ``time`` in s."""
 
     group: str | None = None
@@ -161,7 +162,7 @@ class PoseSet(Struct, frozen=True):
 # ---- vertices and edges of plain hypergraphs -----------------------------------------------------------------------------------
 
 
-class Datum(Struct, frozen=True):
+class Datum(Struct, frozen=True, gc=False):
     """A vertex that only carries data: data of a hypergraph that no robot part represents."""
 
     parameters: Data = ()
@@ -178,7 +179,7 @@ class Role(Enum):
     BOTH = "both"
 
 
-class Shape(Struct, frozen=True):
+class Shape(Struct, frozen=True, gc=False):
     """A geometry on a body. Arcs: ``+ body`` weight Pose (shape frame in the body); ``~ mesh``; ``~ material`` (roles so named).
 
     ``name`` as its author gave it, not necessarily unique; ``rgba`` overrides the material; ``mass`` in kg and
@@ -194,17 +195,17 @@ class Shape(Struct, frozen=True):
     friction: tuple[float, ...] = ()
 
 
-class Mount(Struct, frozen=True):
+class Mount(Struct, frozen=True, gc=False):
     """Where a frame, camera, light or sensor sits. Arcs: ``+ body`` weight Pose (its frame in the body), ``- thing``."""
 
 
-class Layer(Struct, frozen=True):
+class Layer(Struct, frozen=True, gc=False):
     """A texture on a material. Arcs: ``+ texture``, ``- material``. ``use``: rgb, normal, occlusion, roughness, metallic, ..."""
 
     use: str = "rgb"
 
 
-class Subset(Struct, frozen=True):
+class Subset(Struct, frozen=True, gc=False):
     """Triangles of a shape's mesh that show another material than the rest of it. Arcs: ``+ shape``, ``- material``.
 
     ``faces`` are the numbers of the triangles in the mesh, ascending.
@@ -226,7 +227,7 @@ class DofKind(Enum):
     FREE = "free"
 
 
-class Limits(Struct, frozen=True, forbid_unknown_fields=True):
+class Limits(Struct, frozen=True, gc=False, forbid_unknown_fields=True):
     """Bounds of one dof in rad or m and s, N or Nm; None = unlimited."""
 
     lower: float | None = None
@@ -240,7 +241,7 @@ class Limits(Struct, frozen=True, forbid_unknown_fields=True):
 UNLIMITED = Limits()
 
 
-class Safety(Struct, frozen=True, forbid_unknown_fields=True):
+class Safety(Struct, frozen=True, gc=False, forbid_unknown_fields=True):
     """A soft-limit controller (URDF <safety_controller>): soft bounds in rad or m, gains in 1/s and Nms/rad or Ns/m."""
 
     k_velocity: float
@@ -249,7 +250,7 @@ class Safety(Struct, frozen=True, forbid_unknown_fields=True):
     soft_upper: float = 0.0
 
 
-class Calibration(Struct, frozen=True, forbid_unknown_fields=True):
+class Calibration(Struct, frozen=True, gc=False, forbid_unknown_fields=True):
     """Reference positions for homing (URDF <calibration>), in rad or m."""
 
     rising: float | None = None
@@ -257,7 +258,7 @@ class Calibration(Struct, frozen=True, forbid_unknown_fields=True):
     reference: float | None = None
 
 
-class Dof(Noted, frozen=True):
+class Dof(Noted, frozen=True, gc=False):
     """One degree of freedom of a joint, given in the joint frame.
 
     ``axis`` is unit (its notation in ``written``), ``anchor`` in m the point that a rotation keeps in place, ``ref`` the
@@ -283,7 +284,7 @@ class Dof(Noted, frozen=True):
     written: Written | None = None
 
 
-class Joint(Struct, frozen=True):
+class Joint(Struct, frozen=True, gc=False):
     """A connection in the tree with ordered dofs; none = fixed.
 
     Arcs: ``+ parent`` weight Pose P (joint frame in the parent), ``- child`` weight Pose C (joint frame in the child), so that
@@ -293,7 +294,7 @@ class Joint(Struct, frozen=True):
     dofs: tuple[Dof, ...] = ()
 
 
-class Coupling(Struct, frozen=True):
+class Coupling(Struct, frozen=True, gc=False):
     """A joint or tendon that follows others. Arcs: ``+ follower`` weight (1,), ``- leader`` weight (c0, c1, ...).
 
     q_follower = sum over leaders of c0 + c1 q + c2 q^2 + ...; a dof of a joint with several is named by the arc's role.
@@ -302,7 +303,7 @@ class Coupling(Struct, frozen=True):
     active: bool = True
 
 
-class Loop(Struct, frozen=True):
+class Loop(Struct, frozen=True, gc=False):
     """A closure of the tree. Arcs: ``~`` two or more bodies or frames, weight Pose (the closure's frame in each).
 
     ``kind``: connect (points coincide), weld (frames coincide), or joint: the dofs that stay free are ``dofs``.
@@ -314,7 +315,7 @@ class Loop(Struct, frozen=True):
     parameters: Parameters = ()
 
 
-class Tendon(Struct, frozen=True):
+class Tendon(Struct, frozen=True, gc=False):
     """A cable or a linear combination. ``kind`` fixed: arcs ``+ joint`` weight (coefficient,).
 
     ``kind`` spatial: arcs in path order, ``~ frame`` (site), ``~ shape`` of role ``wrap`` with an optional arc of role
@@ -332,35 +333,35 @@ class Tendon(Struct, frozen=True):
     parameters: Parameters = ()
 
 
-class Drive(Struct, frozen=True):
+class Drive(Struct, frozen=True, gc=False):
     """Who drives what. Arcs: ``+ actuator``, ``- joint | tendon | frame | body`` weight gear numbers."""
 
     kind: str = ""
     parameters: Parameters = ()
 
 
-class Sense(Struct, frozen=True):
+class Sense(Struct, frozen=True, gc=False):
     """Who measures what. Arcs: ``+ body | frame | joint | ...``, ``- sensor``; a reference is an arc of role ``reference``."""
 
 
-class Stance(Struct, frozen=True):
+class Stance(Struct, frozen=True, gc=False):
     """The values of a named configuration. Arcs: ``+ pose set``, ``~ joint`` weight its coordinates in rad or m."""
 
 
-class Contact(Struct, frozen=True):
+class Contact(Struct, frozen=True, gc=False):
     """``kind`` pair (these shapes collide) or exclude (these bodies do not). Arcs: ``~`` the two shapes or bodies."""
 
     kind: str = "exclude"
     parameters: Parameters = ()
 
 
-class Relation(Struct, frozen=True):
+class Relation(Struct, frozen=True, gc=False):
     """An edge of a plain hypergraph that means nothing in particular. The weights of its arcs are lists of any shape."""
 
     parameters: Data = ()
 
 
-class Nest(Struct, frozen=True):
+class Nest(Struct, frozen=True, gc=False):
     """What stands inside a vertex or an edge of a plain hypergraph. Arcs: ``+`` the outer element, ``-`` the inner ones in order."""
 
 

@@ -41,7 +41,7 @@ class Written(NamedTuple):
     numbers: tuple[float, ...]
 
 
-class Pose(Noted, frozen=True):
+class Pose(Noted, frozen=True, gc=False):
     """A rigid transformation: position ``xyz`` in m and unit quaternion ``quat`` (w, x, y, z) of the rotation.
 
     Make it with :func:`pose` and its siblings, which normalise; two equal rotations then have equal numbers.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hymeko_x.factor.words import by_meaning, common_words, meaning, telling_words, words_of_all
+from hymeko_x.factor.words import by_meaning, common_words, distinguishing_words, meaning, telling_words
 
 
 def test_a_set_is_called_after_the_words_that_names_share() -> None:
@@ -15,8 +15,7 @@ def test_sides_kinds_and_numbers_tell_nothing_of_what_an_element_is() -> None:
     assert meaning(["FL_calf_joint", "RR_calf_joint"]) == "calf"
     assert meaning(["joint1", "joint2"]) == ""
     names = ["panda_joint1", "panda_joint2", "panda_finger_joint1", "panda_finger_joint2"]
-    assert meaning(names[:2], words_of_all(names)) == ""
-    assert meaning(names[2:], words_of_all(names)) == "finger"
+    assert distinguishing_words(names) == [[], [], ["finger"], ["finger"]]
 
 
 def test_names_without_a_common_meaning_are_grouped_by_those_that_they_have() -> None:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct, field
 
 from hymeko_x.factor.sets import Costs, share
-from hymeko_x.factor.words import by_meaning, limb, telling_words, words_of_all
+from hymeko_x.factor.words import by_meaning, distinguishing_words, limb, telling_words
 from hymeko_x.formats.mjcf import CLASSES, MAIN
 from hymeko_x.formats.mjcf.classes import PARTIAL, Classes
 from hymeko_x.formats.mjcf.roles import ATTRIBUTES
@@ -166,8 +166,7 @@ def _as_one_limb(groups: list[tuple[str, list[Tag]]]) -> list[tuple[str, list[Ta
 def _telling_words(group: list[Tag]) -> list[list[str]]:
     """The words of each element's name that tell what it is, without those that all of them have."""
     names = _names(group)
-    plain = words_of_all(names) if len(names) > _FEWEST else frozenset[str]()
-    return [telling_words(name, plain) for name in names]
+    return distinguishing_words(names) if len(names) > _FEWEST else [telling_words(name) for name in names]
 
 
 def _common(elements: list[Tag]) -> frozenset[tuple[str, str]]:

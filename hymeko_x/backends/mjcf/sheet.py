@@ -150,7 +150,7 @@ class MjcfSheet(Struct):
         written = {name.removeprefix(start): text for name, text in notations.items() if name.startswith(start)} if notations else {}
         for group, inherited in self.inherited.of(groups, base, self.settings):
             value = values[group.key]
-            context = _chosen(kept | found, group.needs) if group.needs and (kept or found) else None
+            context = _chosen({**kept, **found} if kept else found, group.needs) if group.needs and (kept or found) else None
             below = {**base, **context} if context else base
             noted = _chosen(written, group.names) if written else None
             if noted and self._means(group, merge(below, noted), value):
@@ -170,7 +170,7 @@ class MjcfSheet(Struct):
 
     def _unsigned(self, name: str, text: str) -> str:
         """Numbers without the sign of a zero, which only robots from MJCF keep."""
-        if self.from_mjcf or "-0" not in text or name in _REFERENCES:
+        if self.from_mjcf or not ("-0 " in text or text.endswith("-0")) or name in _REFERENCES:
             return text
         return _SIGNED_ZERO.sub("0", text)
 

@@ -82,17 +82,22 @@ REFUSED = object()
 
 
 class InheritedValues:
-    """The values of the groups of an element that has no attributes itself, computed once per class. Classes keep each ``base`` alive."""
+    """The values of the groups of an element that has no attributes itself, computed once per class.
+
+    Groups are known by their place in memory, as is the ``base`` of a class; neither is given up before this is.
+    """
 
     def __init__(self) -> None:
-        self._known: dict[tuple[tuple[Group, ...], int], tuple[tuple[Group, Any], ...]] = {}
+        self._known: dict[tuple[int, int], list[tuple[Group, Any]]] = {}
+        self._groups: list[tuple[Group, ...]] = []
 
-    def of(self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
+    def of(self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> list[tuple[Group, Any]]:
         """Each group with its value for the attributes ``base`` that the class gives; REFUSED where MuJoCo refuses them."""
-        place = groups, id(base) if base else 0
+        place = id(groups), id(base) if base else 0
         found = self._known.get(place)
         if found is None:
-            found = self._known[place] = tuple([(group, _value_of(group, base, settings)) for group in groups])
+            found = self._known[place] = [(group, _value_of(group, base, settings)) for group in groups]
+            self._groups.append(groups)
         return found
 
 

@@ -315,7 +315,8 @@ def _is_fixed(key: Id | None, builder: UrdfBuilder) -> bool:
 def _note_meaningless(joints: list[Node], builder: UrdfBuilder) -> None:
     """Note the meaningless elements that all fixed joints have, and at least half of them and two alike; others stay extras."""
     fixed = [node for node in joints if _is_fixed(node.owner, builder)]
-    usual = tuple((tag, text) for tag in words.MEANINGLESS_IF_FIXED if (text := _take_usual(fixed, tag)))
+    unread = {child.tag for node in fixed for child in node.children if not child.taken}
+    usual = tuple([(tag, text) for tag in words.MEANINGLESS_IF_FIXED if tag in unread and (text := _take_usual(fixed, tag))])
     if usual:
         builder.note(ROOT, notations.FIXED, usual)
 
