@@ -6,6 +6,7 @@ exact and deterministic, as :mod:`hymeko_x.factor` is for forms with an order an
 
 from __future__ import annotations
 
+from collections import defaultdict
 from heapq import nsmallest
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -85,7 +86,7 @@ def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], lis
 def _most_saved(rows: list[Row], owners: Mapping[Pair, Members], costs: Costs, use: int) -> int:
     """No set saves more than this: all fields of a row, each written once instead of every time, and two rows that name the set."""
     saved = {pair: (len(members) - 1) * (len(pair[0]) + len(pair[1]) + costs.field) for pair, members in owners.items()}
-    return max([sum([saved[pair] for pair in row if pair in saved]) for row in rows]) - 2 * use - costs.definition
+    return max([sum([saved.get(pair, 0) for pair in row]) for row in rows]) - 2 * use - costs.definition
 
 
 def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:
@@ -98,7 +99,7 @@ def _ranked(rows: Sequence[Row], owners: Mapping[Pair, Members]) -> list[tuple[f
 
     def common(members: Members) -> frozenset[Pair]:
         """All fields that these rows share: a subset of those of any one of them."""
-        return frozenset(pair for pair in rows[min(members)] if members <= owners.get(pair, _NO_MEMBERS))
+        return frozenset([pair for pair in rows[next(iter(members))] if members <= owners.get(pair, _NO_MEMBERS)])
 
     sharing: dict[Members, list[Pair]] = {}
     for pair, members in owners.items():
@@ -119,10 +120,10 @@ def _ranked(rows: Sequence[Row], owners: Mapping[Pair, Members]) -> list[tuple[f
 
 def _owners(rows: Sequence[Row]) -> dict[Pair, Members]:
     """For every field that occurs more than once the rows that have it."""
-    found: dict[Pair, list[int]] = {}
+    found: dict[Pair, list[int]] = defaultdict(list)
     for number, row in enumerate(rows):
         for pair in row:
-            found.setdefault(pair, []).append(number)
+            found[pair].append(number)
     return {pair: frozenset(members) for pair, members in found.items() if len(members) > 1}
 
 

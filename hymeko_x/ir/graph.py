@@ -207,7 +207,7 @@ class Hypergraph(Struct, Generic[K, V, E, W], frozen=True, dict=True):
 
 def _changed(table: Mapping[K, T], new: Mapping[K, T] | None, gone: set[K]) -> Mapping[K, T]:
     """A table of a graph with these entries, and without those."""
-    if not new and gone.isdisjoint(table):
+    if not new and (not gone or gone.isdisjoint(table)):
         return table
     merged = {**table, **(new or {})}
     return MappingProxyType(merged if gone.isdisjoint(merged) else {key: value for key, value in merged.items() if key not in gone})

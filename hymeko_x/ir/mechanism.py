@@ -275,7 +275,10 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
         without: Iterable[Id] = (),
     ) -> Mechanism:
         """The mechanism with these elements added or exchanged in their place, and without the ones named; itself where nothing changes."""
-        graph = self.graph.replace(vertices=vertices, edges=edges, without=without)
+        gone = frozenset(without)
+        if not (vertices or edges or gone):
+            return self
+        graph = self.graph.replace(vertices=vertices, edges=edges, without=gone)
         is_same = graph.vertices is self.graph.vertices and graph.edges is self.graph.edges
         return self if is_same else self.with_graph(graph)
 

@@ -367,12 +367,12 @@ def numbers_text(values: tuple[float, ...]) -> str:
     A writer of JSON finds the digits in a tenth of the time; where it would not write them as Python does, Python is asked.
     """
     try:
-        text = encode(values)
+        text = encode(values).decode()
     except TypeError:  # a number that is no plain one of Python
         return " ".join(map(number_text, values))
-    if b"0.0000" in text or (text.count(b".") != len(values) and (b"null" in text or not are_numbers(values))):
+    if "0.0000" in text or (text.count(".") != len(values) and ("null" in text or not are_numbers(values))):
         return " ".join(map(number_text, values))
-    return text[1:-1].decode().replace(".0,", " ").replace(",", " ").removesuffix(".0")
+    return text[1:-1].replace(".0,", " ").replace(",", " ").removesuffix(".0")
 
 
 def number_texts(values: Mapping[str, float]) -> dict[str, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from hymeko_x.ir.values import are_numbers, number_text, numbers_text
@@ -96,6 +97,7 @@ def print_field(name: str, value: Value | None, type: str = "") -> str:
     return f"{text}={_ref(value, '')}" if isinstance(value, Ref) else f"{text} {print_value(value)}"
 
 
+@lru_cache(4096, typed=True)  # a text names its elements and fields again and again
 def print_name(name: str) -> str:
     """A name, in backticks unless it is a plain word (or was quoted by its author)."""
     is_plain = (name.isidentifier() and name.isascii()) or _PLAIN_NAME.fullmatch(name)

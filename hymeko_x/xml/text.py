@@ -15,7 +15,6 @@ NAME = r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?"
 _MARKUP = (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"))
 _QUOTED = (('"', "&quot;"), ("\n", "&#10;"), ("\r", "&#13;"), ("\t", "&#9;"))
 _SPECIAL = re.compile(r'[&<>"\x00-\x1f\ud800-\udfff\ufffe\uffff]')
-_SPECIAL_IN_TAG = re.compile(r"[&<>\x00-\x1f\ud800-\udfff\ufffe\uffff]")
 _IMPOSSIBLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 _IMPOSSIBLE_IN_COMMENT = re.compile(r"[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
 
@@ -51,7 +50,7 @@ def attributes_text(attributes: Mapping[str, str | None]) -> str:
         return ""
     parts = [f' {name}="{value}"' for name, value in attributes.items() if value is not None]
     text = "".join(parts)
-    if _SPECIAL_IN_TAG.search(text) is None and text.count('"') == 2 * len(parts):
+    if text.isprintable() and not ("&" in text or "<" in text or ">" in text) and text.count('"') == 2 * len(parts):
         return text
     return "".join([f' {name}="{escaped(value)}"' for name, value in attributes.items() if value is not None])
 

@@ -88,17 +88,27 @@ class InheritedValues:
     """
 
     def __init__(self) -> None:
-        self._known: dict[tuple[int, int], list[tuple[Group, Any]]] = {}
+        self._known: dict[tuple[int, int], tuple[tuple[Group, Any], ...]] = {}
         self._groups: list[tuple[Group, ...]] = []
 
-    def of(self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> list[tuple[Group, Any]]:
+    def of(self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
         """Each group with its value for the attributes ``base`` that the class gives; REFUSED where MuJoCo refuses them."""
         place = id(groups), id(base) if base else 0
         found = self._known.get(place)
         if found is None:
-            found = self._known[place] = [(group, _value_of(group, base, settings)) for group in groups]
+            found = self._known[place] = _values_of(groups, base, settings) if base else _own_defaults(groups, settings)
             self._groups.append(groups)
         return found
+
+
+@lru_cache(256)
+def _own_defaults(groups: tuple[Group, ...], settings: Settings) -> tuple[tuple[Group, Any], ...]:
+    """The values that the groups have where no class gives any: MuJoCo's own."""
+    return _values_of(groups, {}, settings)
+
+
+def _values_of(groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
+    return tuple([(group, _value_of(group, base, settings)) for group in groups])
 
 
 def _value_of(group: Group, base: Mapping[str, str], settings: Settings) -> Any:

@@ -110,13 +110,13 @@ class MjcfBuilder(Builder):
 
         Where printing the values again would not mean the same, or ``always``, the attributes are noted as they are.
         """
-        own, settings = element.attributes, self.settings
+        own, names, settings = element.attributes, element.attributes.keys(), self.settings
         merged = merge(base, own)
         found: Values = {}
         taken: list[str] = []
         try:
             for group, inherited in self.inherited.of(groups, base, settings):
-                if inherited is not REFUSED and own.keys().isdisjoint(group.names) and own.keys().isdisjoint(group.needs):
+                if inherited is not REFUSED and names.isdisjoint(group.names) and (not group.needs or names.isdisjoint(group.needs)):
                     found[group.key] = inherited
                     continue
                 value = found[group.key] = group.read(merged, settings)

@@ -168,7 +168,7 @@ def _read_dynamics(joint: Node, key: Id, builder: UrdfBuilder) -> tuple[float, f
     if node is None:
         builder.follow(key, notations.DYNAMICS, follows=False)
         return 0.0, 0.0
-    damping, friction = (_usually(0.0, node, name, key, builder) for name in ("damping", "friction"))
+    damping, friction = [_usually(0.0, node, name, key, builder) for name in ("damping", "friction")]
     if damping == friction == 0.0:
         builder.follow(key, notations.DYNAMICS, follows=True)
     return damping, friction
@@ -222,7 +222,7 @@ def _bound(node: Node, name: str, key: Id, builder: UrdfBuilder) -> float | None
 
 
 def _rates(node: Node, lower: float | None, upper: float | None, builder: UrdfBuilder) -> Limits:
-    return Limits(lower, upper, *(_rate(node, name, builder) for name in ("velocity", "effort", "acceleration", "jerk")))
+    return Limits(lower, upper, *[_rate(node, name, builder) for name in ("velocity", "effort", "acceleration", "jerk")])
 
 
 def _rate(node: Node, name: str, builder: UrdfBuilder) -> float | None:
@@ -253,7 +253,7 @@ def _read_safety(joint: Node, key: Id, builder: UrdfBuilder) -> Safety | None:
     if "k_velocity" not in node.attributes:
         message = f"{joint.subject}: <safety_controller> has no k_velocity; 0 is used"
         builder.warn(codes.MISSING_ATTRIBUTE, node, message)
-    return Safety(*(_usually(0.0, node, name, key, builder) for name in names))
+    return Safety(*[_usually(0.0, node, name, key, builder) for name in names])
 
 
 def _read_calibration(joint: Node, builder: UrdfBuilder) -> Calibration | None:
