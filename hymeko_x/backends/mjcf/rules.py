@@ -13,7 +13,7 @@ from hymeko_x.diagnostics import Origin
 from hymeko_x.formats.mjcf.keyframes import with_poses
 from hymeko_x.formats.mjcf.lengths import has_soft_bodies, without_misfits
 from hymeko_x.formats.mjcf.notations import attribute
-from hymeko_x.formats.mjcf.words import NAME, compiler_has
+from hymeko_x.formats.mjcf.words import AT_SITES, NAME, compiler_has
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Body
 from hymeko_x.rewrite.actuators import drop_foreign_actuators, drop_idle_actuators
@@ -33,6 +33,7 @@ from hymeko_x.rewrite.joints import (
 from hymeko_x.rewrite.loops import anchor_closures, close_by_points, close_in_pairs, open_second_parents
 from hymeko_x.rewrite.names import make_names_usable, name_assets_once
 from hymeko_x.rewrite.roots import put_world_link_into_world, report_open_bases
+from hymeko_x.rewrite.sensors import measure_at_frames
 from hymeko_x.rewrite.shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.rewrite.subsets import split_subsets
 from hymeko_x.rewrite.transmissions import drive_by_transmissions
@@ -49,6 +50,11 @@ def write_poses_as_keyframes(mechanism: Mechanism, _context: Context) -> Mechani
     return with_poses(mechanism)
 
 
+def _measure_at_sites(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Sensors that are on bodies measure at sites, where MuJoCo has such sensors."""
+    return measure_at_frames(mechanism, context, AT_SITES)
+
+
 def _drive_by_transmissions(mechanism: Mechanism, context: Context) -> Mechanism:
     """Transmissions are actuators; as many are servos, the integrator is one that keeps them calm."""
     driven = drive_by_differentials(drive_by_transmissions(mechanism, context), context)
@@ -57,6 +63,7 @@ def _drive_by_transmissions(mechanism: Mechanism, context: Context) -> Mechanism
 
 RULES: tuple[Rule, ...] = (
     mount_sensors_of_fragments,
+    _measure_at_sites,
     make_names_usable,
     name_assets_once,
     open_second_parents,
@@ -168,7 +175,6 @@ ACTUATED: tuple[Rule, ...] = (integrate_implicitly,)
 
 _REPLACED: Mapping[Rule, Rule | None] = MappingProxyType(
     {
-        mount_sensors_of_fragments: None,
         anchor_closures: None,
         name_dofs: None,
         give_moving_bodies_mass: _give_bare_bodies_mass,

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.sheet import tag_of
+from hymeko_x.formats.mjcf.schema import attributes_of
+from hymeko_x.formats.mjcf.words import AT_SITES
 from hymeko_x.ir.parts import Sense, Sensor
-from hymeko_x.rewrite.fragments import IMU
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from hymeko_x.xml.printing import Tag
 
 _MEASURED = {
-    "frame": frozenset({*IMU, "velocimeter", "force", "torque", "touch", "rangefinder", "magnetometer"}),
+    "frame": AT_SITES,
     "joint": frozenset(
         {"jointpos", "jointvel", "jointactuatorfrc", "jointlimitpos", "jointlimitvel", "jointlimitfrc", "ballquat", "ballangvel"}
     ),
@@ -29,13 +30,13 @@ _SENSED = {"frame": "site", "shape": "geom", "world": "body"}
 
 
 def write_sensors(sheet: MjcfSheet) -> None:
-    """Every sensor of a mechanism that came from MJCF; of others those of MuJoCo's kinds that measure what it measures by them."""
+    """Every sensor of MuJoCo's kinds of a mechanism that came from MJCF; of others those that measure what MuJoCo measures by them."""
     senses: dict[Id, tuple[RobotArc, ...]] = {}
     for _, _, arcs in sheet.mechanism.edges(Sense):
         senses |= {arc.target: arcs for arc in arcs if arc.sign < 0}
     items: list[tuple[Id, Tag]] = []
     for key, sensor in sheet.mechanism.vertices(Sensor):
-        if not sheet.from_mjcf and not _is_of_mujoco(sensor, senses.get(key, ())):
+        if not (attributes_of(f"sensor/{sensor.kind}") if sheet.from_mjcf else _is_of_mujoco(sensor, senses.get(key, ()))):
             continue
         parameters = sheet.parameters(sensor.parameters, f"sensor/{sensor.kind}", {})
         attributes = {

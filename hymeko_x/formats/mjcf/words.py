@@ -241,6 +241,9 @@ SENSED_TYPES: Mapping[str, str] = MappingProxyType({"body": "body", "xbody": "bo
 ALONE = frozenset({"site", "joint", "tendon", "actuator", "body", "geom", "camera"})
 """Sensed elements whose arc needs no role: the attribute follows from the kind of the target."""
 
+AT_SITES = frozenset({"accelerometer", "gyro", "velocimeter", "force", "torque", "touch", "rangefinder", "magnetometer"})
+"""The kinds of sensors that measure at a site."""
+
 
 def is_range(value: object) -> bool:
     """Whether a parameter is a range that bounds anything: MuJoCo takes two zeros for none."""
