@@ -360,6 +360,11 @@ def mount_edge(body: Id, thing: Id, pose: Pose = IDENTITY) -> RobotEdge:
     return Edge(parts.Mount(), (_posed(body, 1, pose), Arc(thing, -1)))
 
 
+def sense_edge(measured: Id, sensor: Id) -> RobotEdge:
+    """The edge by which a sensor measures one element."""
+    return Edge(parts.Sense(), (Arc(measured, 1), Arc(sensor, -1)))
+
+
 def layer_edge(texture: Id, material: Id, use: str = "rgb") -> RobotEdge:
     """The edge that puts a texture on a material."""
     return Edge(parts.Layer(use), (Arc(texture, 1), Arc(material, -1)))

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes, formats
 from hymeko_x.diagnostics import listed
-from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.mechanism import ROOT, WORLD, Id, mount_edge
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, mount_edge, sense_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Camera, Frame, Sense, Sensor
 
@@ -44,7 +43,7 @@ def mount_sensors_of_fragments(mechanism: Mechanism, context: Context) -> Mechan
         for kind in () if key.kind == "camera" else IMU:
             sensor = names.take("sensor", f"{name}_{kind}")
             vertices[sensor] = Sensor(kind)
-            edges[names.take("sense", sensor.name)] = Edge(Sense(), (Arc(key, 1), Arc(sensor, -1)))
+            edges[names.take("sense", sensor.name)] = sense_edge(key, sensor)
     if not vertices:
         return mechanism
     found = [key for key in vertices if key.kind != "sensor"]

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import counted, listed
-from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.mechanism import mount_edge
+from hymeko_x.ir.mechanism import mount_edge, sense_edge
 from hymeko_x.ir.names import names_in_use
-from hymeko_x.ir.parts import Frame, Sense, Sensor
+from hymeko_x.ir.parts import Frame, Sensor
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -32,7 +31,7 @@ def measure_at_frames(mechanism: Mechanism, context: Context, kinds: Collection[
         frame = names.take("frame", view.thing.name)
         frames[frame] = Frame()
         edges[view.id] = mount_edge(view.body, frame, view.pose)
-        edges[names.take("sense", view.thing.name)] = Edge(Sense(), (Arc(frame, 1), Arc(view.thing, -1)))
+        edges[names.take("sense", view.thing.name)] = sense_edge(frame, view.thing)
     shown = listed([f"'{view.thing.name}'" for view in mounted], _SHOWN)
     how = "measures at a frame of its own" if len(mounted) == 1 else "measure at frames of their own"
     context.report.note(codes.REWRITTEN, f"{counted(len(mounted), 'sensor')} {how}: {shown}", element=str(mounted[0].thing))

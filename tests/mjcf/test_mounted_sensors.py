@@ -21,10 +21,6 @@ SDF = """<sdf version="1.11"><model name="m"><link name="base"/><link name="head
 NATIVE = '<mujoco model="r"><worldbody><body name="head"><joint name="j" axis="0 0 1"/><geom size="0.1"/></body></worldbody></mujoco>'
 
 
-def read(text: str, format: str) -> hx.Robot:
-    return hx.loads(text, format)
-
-
 def moving(text: str) -> mujoco.MjData:
     data = mujoco.MjData(mujoco.MjModel.from_xml_string(text))
     data.qvel[:] = 2.0
@@ -34,7 +30,7 @@ def moving(text: str) -> mujoco.MjData:
 
 @pytest.mark.parametrize(("text", "format"), [(ARM, "urdf"), (NATIVE, "mjcf")])
 def test_a_sensor_that_an_edit_puts_on_a_body_measures_there(text: str, format: str) -> None:
-    robot = read(text, format)
+    robot = hx.loads(text, format)
     with robot.edit() as e:
         e.add_sensor("shake", "accelerometer", on="head", at=(0.5, 0.0, 0.0))
         e.add_sensor("head", "gyro", on="head")
@@ -58,7 +54,7 @@ def test_a_magnetometer_of_sdf_measures_the_field_where_it_is(tmp_path: Path) ->
 
 @pytest.mark.parametrize(("text", "format"), [(ARM, "urdf"), (NATIVE, "mjcf")])
 def test_kinds_that_mujoco_does_not_have_are_left_out(text: str, format: str) -> None:
-    robot = read(text, format)
+    robot = hx.loads(text, format)
     with robot.edit() as e:
         e.add_sensor("height", "altimeter", on="head")
     assert "height" not in hx.dumps(e.robot, "mjcf")
@@ -66,7 +62,7 @@ def test_kinds_that_mujoco_does_not_have_are_left_out(text: str, format: str) ->
 
 @pytest.mark.parametrize(("text", "format"), [(ARM, "urdf"), (NATIVE, "mjcf")])
 def test_an_imu_that_an_edit_adds_is_what_it_consists_of(text: str, format: str) -> None:
-    robot = read(text, format)
+    robot = hx.loads(text, format)
     with robot.edit() as e:
         e.add_sensor("imu", "imu", on="head")
     data = moving(hx.dumps(e.robot, "mjcf"))

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf.sensors import CAMERA_TURN, DOWN, HFOV, IMAGE, LIGHTS
 from hymeko_x.formats.sdf.values import COLOUR, NUMBER, VECTOR
-from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.mechanism import WORLD, mount_edge
-from hymeko_x.ir.parts import Camera, Light, Sense, Sensor, World
+from hymeko_x.ir.mechanism import WORLD, mount_edge, sense_edge
+from hymeko_x.ir.parts import Camera, Light, Sensor, World
 from hymeko_x.ir.values import NO_ROTATION, Pose, compose, quat_from_z, scaled, unit
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ def read_joint_sensor(node: Node, joint: Id, model: Model, builder: SdfBuilder) 
     """A sensor of a joint, which measures it; its pose stays as written."""
     key = _own(node, "sensor", model.scope, builder)
     builder.vertices[key] = _read_sensor(node, key, builder)
-    builder.edges[builder.names.take("sense", key.name)] = Edge(Sense(), (Arc(joint, 1), Arc(key, -1)))
+    builder.edges[builder.names.take("sense", key.name)] = sense_edge(joint, key)
 
 
 def _own(node: Node, kind: str, scope: str, builder: SdfBuilder) -> Id:
