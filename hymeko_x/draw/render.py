@@ -15,6 +15,7 @@ from hymeko_x import api, codes, formats
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.draw.scene import COLLISION, FIELD_OF_VIEW, GROUND, VISUAL, add_scene, remove_surroundings
 from hymeko_x.ir.holder import mechanism_of
+from hymeko_x.verify.readers import in_own_thread
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -197,8 +198,8 @@ def open_studio(robot: Mechanism | Holder, path: str | None, look: Look, like: S
 
     if path is not None:
         try:
-            return Studio(mujoco.MjSpec.from_file(path), path, look, like)
-        except ValueError as error:
+            return Studio(in_own_thread(lambda: mujoco.MjSpec.from_file(path)), path, look, like)
+        except (ValueError, RuntimeError) as error:
             raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}", Origin(path)) from error
     row = next(row for row in formats.FORMATS if is_drawn(row))
     with TemporaryDirectory(prefix="hymeko-x-") as folder:
@@ -211,8 +212,8 @@ def _compiled(spec: Any, name: str) -> mujoco.MjModel:
     import mujoco
 
     try:
-        return spec.compile()
-    except (ValueError, mujoco.FatalError) as error:
+        return in_own_thread(spec.compile)
+    except (ValueError, RuntimeError, mujoco.FatalError) as error:
         raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}", Origin(name)) from error
 
 

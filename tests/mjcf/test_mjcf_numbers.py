@@ -14,6 +14,7 @@ from mjnumbers import Place, places
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal
+from hymeko_x.verify.readers import in_own_thread
 from tests.odd_numbers import ODD
 
 QUIET = pytest.mark.filterwarnings("ignore::UserWarning")  # MuJoCo's, about what it repairs
@@ -56,8 +57,7 @@ def apart(asked: Iterable[Place]) -> Iterator[Apart]:
 def _theirs(model: str) -> bool | None:
     """Whether MuJoCo takes the model; None where it takes the words, and something else is wrong."""
     try:
-        spec = mujoco.MjSpec.from_string(model)
-        spec.compile()
+        in_own_thread(lambda: mujoco.MjSpec.from_string(model).compile())
     except (ValueError, mujoco.FatalError) as error:
         return False if str(error).startswith("XML Error") else None
     except RuntimeError:  # something that MuJoCo itself did not expect

@@ -157,7 +157,8 @@ def _usd(data: bytes) -> Iterator[Change]:
     layer.Traverse("/", paths.append)
     for path in paths:
         if path.IsPrimPath():
-            yield _without(layer, path)
+            if not _is_empty(layer.GetPrimAtPath(path)):
+                yield _without(layer, path)
         elif path.IsPropertyPath():
             yield from _other_property(layer, path)
 
@@ -166,8 +167,16 @@ def _says_no_more(layer: Any, spec: Any) -> bool:
     """Whether a stage without it means the same: a default, a box that follows from sizes, an order of operations that do nothing."""
     if spec.name == "xformOpOrder":
         operations = (layer.GetAttributeAtPath(spec.owner.path.AppendProperty(name)) for name in spec.default)
-        return all(operation is None or str(operation.default) in _AS_IF_NOT_THERE for operation in operations)
+        return all(operation is None or _says_no_more(layer, operation) for operation in operations)
+    if spec.name == "xformOp:scale":
+        return bool(spec.default == Gf.Vec3d(1))
     return spec.name == "extent" or str(spec.default) in _AS_IF_NOT_THERE
+
+
+def _is_empty(prim: Any) -> bool:
+    """Whether a prim has nothing but its name and its place."""
+    is_plain = prim.typeName in ("", "Xform", "Scope") and {*prim.ListInfoKeys()} <= {"specifier", "typeName"}
+    return is_plain and not (prim.nameChildren or prim.properties)
 
 
 def _copy(layer: Any) -> Any:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -64,3 +66,13 @@ def test_a_plane_with_friction_is_compared_like_any_other(tmp_path: Path) -> Non
     hx.convert(tmp_path / "r.xml", tmp_path / "r.sdf")
     assert "<surface>" in (tmp_path / "r.sdf").read_text()
     assert hx.verify(tmp_path / "r.xml", tmp_path / "r.sdf", samples=2).is_same
+
+
+def test_an_exception_that_mujoco_did_not_expect_is_a_refusal_and_the_next_file_with_a_warning_is_read() -> None:
+    """In one process that ends in time, which MuJoCo's handler of warnings would keep from ending."""
+    text = '<mujoco><worldbody><body name="a"><geom size=".1"/></body></worldbody><equality><connect body1="a" {}/></equality></mujoco>'
+    Path("empty.xml").write_text(text.format('anchor=""'), "utf-8")
+    Path("warned.xml").write_text(text.format('anchor="0 0 0" solref="nan"'), "utf-8")
+    program = "import hymeko_x as hx; print([hx.verify(name, name).reason for name in ('empty.xml', 'warned.xml')])"
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True)
+    assert run.stdout == "['MuJoCo refuses empty.xml: Caught an unknown exception!', '']\n"

@@ -9,9 +9,10 @@ import contextlib
 import os
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from hymeko_x import codes, formats
 from hymeko_x.assets import archives
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from hymeko_x.formats import Format
     from hymeko_x.verify.model import KinematicModel
     from hymeko_x.verify.readers.lookup import Lookup
+
+T = TypeVar("T")
 
 _HEAD = 65536  # bytes of a file in which its root element is searched
 
@@ -74,6 +77,16 @@ def _read_inside(within: archives.Inside, lookup: Lookup) -> KinematicModel:
         except (OSError, *archives.DAMAGED) as error:
             raise refuse(codes.CANNOT_READ, f"cannot be unpacked: {error}", Origin(within.archive)) from error
         return read(Path(folder, within.name), lookup)
+
+
+def in_own_thread(call: Callable[[], T]) -> T:
+    """Returns and raises what ``call`` does, from a thread of its own.
+
+    MuJoCo 4.0's bindings leave their handler of warnings in the thread in which a model makes them raise `Caught an unknown exception!`:
+    the next warning about a file in that thread never ends.
+    """
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(call).result()
 
 
 @contextlib.contextmanager

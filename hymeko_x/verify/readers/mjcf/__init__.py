@@ -18,7 +18,7 @@ from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.verify.features import Feature
 from hymeko_x.verify.kinematics import disagreement
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, Role, Shape, Surface, world_body
-from hymeko_x.verify.readers import native_output
+from hymeko_x.verify.readers import in_own_thread, native_output
 from hymeko_x.verify.readers.mjcf.constraints import (
     SENSOR_KINDS,
     read_actuators,
@@ -58,8 +58,8 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
     """The robot that MuJoCo compiles. Raises: Refusal HX302 in MuJoCo's words."""
     with native_output() as output, _without_log_file():
         try:
-            compiled = _compiled(path)
-        except (ValueError, mujoco.FatalError) as error:
+            compiled = in_own_thread(lambda: _compiled(path))
+        except (ValueError, RuntimeError, mujoco.FatalError) as error:
             reason = " ".join(str(error).split()) or output()
             raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses {path.name}: {reason}", Origin(str(path))) from error
     found = from_compiled(compiled)
