@@ -13,7 +13,7 @@ from hymeko_x.compare.extras import format_of
 from hymeko_x.ir.kinematics import displacement
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, end_of, numbers_weight, pose_weight
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import MESH_POINTS, Body, DofKind, Joint, Layer, Material, Mesh, Mount, Sense, Shape, Stance
+from hymeko_x.ir.parts import MESH_POINTS, Body, DofKind, Frame, Joint, Layer, Material, Mesh, Mount, Sense, Shape, Stance
 from hymeko_x.ir.values import ZERO, X, Y, Z, apply, compose, cross, inverse, rotate, rotation_angle, scaled
 from hymeko_x.rewrite.efforts import actuator_efforts
 from hymeko_x.rewrite.sites import is_link
@@ -152,9 +152,9 @@ def _came_as_file(before: object, after: object) -> bool:
 
 
 def _links(before: Mechanism, after: Mechanism) -> frozenset[Id]:
-    """The frames, with their mounts, that are links of their own in both mechanisms."""
+    """The mounts of frames that are links of their own in both mechanisms, and the frames, but for those that a size shows."""
     views = [view for views in before.mounts.values() for view in views if is_link(view) and view.body in after.graph.vertices]
-    return frozenset(key for view in views for key in (view.id, view.thing))
+    return frozenset([*(view.id for view in views), *(view.thing for view in views if before.vertex(view.thing, Frame) == Frame())])
 
 
 def _keyframes(before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Id]:

@@ -53,4 +53,4 @@ def _needs_link(view: MountView, mechanism: Mechanism) -> bool:
 
 def is_link(view: MountView) -> bool:
     """Whether a frame is where the body of its name is, which stands for it in formats without frames."""
-    return view.pose == IDENTITY and view.body.name.partition("#")[0] == view.thing.name
+    return view.thing.kind == "frame" and view.pose == IDENTITY and view.body.name.partition("#")[0] == view.thing.name

@@ -325,3 +325,20 @@ def test_a_shape_with_the_colour_that_its_material_gave_it_lost_nothing(material
     coloured = replace(edge, data=replace(view.shape, rgba=own or (1.0, 0.0, 0.0, 1.0)), arcs=edge.arcs[:1])
     after = before.replace(edges={view.id: coloured})
     assert sorted(found.field for found in relevant(diff(before, after), before, after, ledger.TOLERANCE)) == told
+
+
+@pytest.mark.parametrize(
+    ("text", "lost"),
+    [
+        ('<site name="tool"/>', []),
+        ('<site name="tool" size="0.03"/>', ["frame 'tool'"]),
+        ('<camera name="tool"/>', ["camera 'tool'", "mount 'tool'"]),
+        ('<light name="tool"/>', ["light 'tool'", "mount 'tool'"]),
+        ('<site name="tool" pos="0 0 1"/>', ["frame 'tool'", "mount 'tool'"]),
+    ],
+)
+def test_a_body_stands_for_the_frame_of_its_name_alone_which_has_its_size_to_lose(text: str, lost: list[str]) -> None:
+    body = f'<mujoco><worldbody><body name="tool"><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>{text}</body></worldbody></mujoco>'
+    robot = hx.loads(body, "mjcf").mechanism
+    losses = pipeline.convert(robot, formats.URDF, Options(), NoFiles(), Report()).losses
+    assert [str(loss.element) for loss in losses or ()] == lost
