@@ -33,6 +33,7 @@ def face_normals(points: NDArray[np.float32], corners: NDArray[Any]) -> NDArray[
     return normals.T.astype(np.float32, order="C")
 
 
+@remembered
 def volume_of_sheets(part: Submesh) -> float:
     """The sum of the volumes of the pyramids from the mean point to all triangles, in m^3; zero for a flat mesh.
 
@@ -42,6 +43,7 @@ def volume_of_sheets(part: Submesh) -> float:
     return float(np.abs(np.einsum("ij,ij->i", a, np.cross(b, c))).sum() / 6.0)
 
 
+@remembered
 def extents(part: Submesh) -> Vec3:
     """The lengths in m of the box along the principal axes of the points, ascending."""
     low, middle, high = sorted(_principal(part)[1].tolist())

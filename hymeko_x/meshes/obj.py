@@ -207,19 +207,22 @@ def _are_rows(faces: NDArray[Any], table: NDArray[Any]) -> bool:
 @remembered
 def obj_bytes(part: Submesh) -> bytes:
     """The part as a Wavefront OBJ file: points to float32 precision, texture coordinates, normals, triangles."""
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (part.points + 0.0).tolist()]
-    columns, corner = [part.faces], "{}"
+    text = _lines(b"v %.9g %.9g %.9g\n", part.points + 0.0)
+    columns, corner = [part.faces], b"%d"
     if part.uv is not None:
-        lines += [f"vt {u:.9g} {v:.9g}" for u, v in (part.uv + 0.0).tolist()]
+        text += _lines(b"vt %.9g %.9g\n", part.uv + 0.0)
         columns.append(part.faces if part.corners is None else part.corners)
-        corner = "{}/{}"
+        corner = b"%d/%d"
     if part.normals is not None:
-        lines += [f"vn {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (part.normals + 0.0).tolist()]
+        text += _lines(b"vn %.9g %.9g %.9g\n", part.normals + 0.0)
         columns.append(part.faces if part.normal_corners is None else part.normal_corners)
-        corner += "/{}" if part.uv is not None else "//{}"
-    face = f"f {corner} {corner} {corner}"
-    lines += [face.format(*numbers) for numbers in (np.stack(columns, axis=2) + 1).reshape(len(part.faces), -1).tolist()]
-    return ("\n".join(lines) + "\n").encode()
+        corner += b"/%d" if part.uv is not None else b"//%d"
+    return text + _lines(b"f " + b" ".join([corner] * 3) + b"\n", np.stack(columns, axis=2) + 1)
+
+
+def _lines(line: bytes, rows: NDArray[Any]) -> bytes:
+    """A line for each of the rows, with its numbers."""
+    return line * len(rows) % tuple(rows.ravel().tolist())
 
 
 # ---- material libraries --------------------------------------------------------------------------------------------------------------

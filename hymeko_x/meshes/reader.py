@@ -236,22 +236,30 @@ def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, mis
 
     Raises: Unreadable.
     """
+    found, missing = _read_colours(data, suffix, fetch)
+    if miss is not None:
+        for name in missing:
+            miss(name)
+    return found
+
+
+@remembered_reader
+def _read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tuple[ColouredMesh, tuple[str, ...]]:
+    """The triangles, and the names of the missing images. Raises: Unreadable."""
     check_file(data, suffix)
     if suffix == ".stl":
-        return ColouredMesh(read_whole(data, suffix, fetch))
+        return ColouredMesh(read_whole(data, suffix, fetch)), ()
     groups = [group for group in _plain_groups(data, suffix, lambda name: _fetched(name, fetch), normals=True) if len(group.faces)]
     if not groups:
-        return _coloured([_piece_of(part) for part in read_parts(data, suffix, fetch)])
+        return _coloured([_piece_of(part) for part in read_parts(data, suffix, fetch)]), ()
     images = _images(groups, fetch)
-    for name in dict.fromkeys(group.entry.image for group in groups if group.entry.image and group.entry.image not in images):
-        if miss is not None:
-            miss(name)
+    missing = dict.fromkeys(group.entry.image for group in groups if group.entry.image and group.entry.image not in images)
     shown = [_with_image(group) if group.entry.image in images else _without_image(group) for group in groups]
     appearances: dict[MaterialEntry, Appearance | None] = {}
     for group in shown:
         if group.entry not in appearances:
             appearances[group.entry] = _appearance_of(group, images)
-    return _coloured([(appearances[group.entry], group) for group in shown])
+    return _coloured([(appearances[group.entry], group) for group in shown]), tuple(missing)
 
 
 @remembered_reader

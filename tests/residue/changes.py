@@ -145,8 +145,12 @@ def _other_values(value: Any) -> Iterator[Any]:
 # ---- USD -------------------------------------------------------------------------------------------------------------------
 
 
-_AS_IF_NOT_THERE = frozenset({"0", "inf", "-inf", "0.0", "(0, 0, 0)", "(1, 0, 0, 0)", "X", "Vt.Vec3fArray(0)"})
+_AS_IF_NOT_THERE = frozenset({"0", "inf", "-inf", "0.0", "(0, 0, 0)", "X", "Vt.Vec3fArray(0)"})
 """Values that mean the same as no value: no translation, no rotation, the first axis."""
+
+
+_MOST = 2**31 - 1
+"""The greatest whole number that every type of USD has."""
 
 
 def _usd(data: bytes) -> Iterator[Change]:
@@ -159,18 +163,25 @@ def _usd(data: bytes) -> Iterator[Change]:
         if path.IsPrimPath():
             if not _is_empty(layer.GetPrimAtPath(path)):
                 yield _without(layer, path)
-        elif path.IsPropertyPath():
+        elif path.IsPropertyPath() and not _is_void(layer.GetObjectAtPath(path)):
             yield from _other_property(layer, path)
 
 
 def _says_no_more(layer: Any, spec: Any) -> bool:
-    """Whether a stage without it means the same: a default, a box that follows from sizes, an order of operations that do nothing."""
+    """Whether a stage without it means the same: a default, an order of operations that do nothing."""
     if spec.name == "xformOpOrder":
         operations = (layer.GetAttributeAtPath(spec.owner.path.AppendProperty(name)) for name in spec.default)
         return all(operation is None or _says_no_more(layer, operation) for operation in operations)
     if spec.name == "xformOp:scale":
         return bool(spec.default == Gf.Vec3d(1))
-    return spec.name == "extent" or str(spec.default) in _AS_IF_NOT_THERE
+    if isinstance(spec.default, Gf.Quatf | Gf.Quatd):
+        return not any(spec.default.imaginary)
+    return str(spec.default) in _AS_IF_NOT_THERE
+
+
+def _is_void(spec: Any) -> bool:
+    """Whether a property has no value, or one that is not of the robot: the box around a geometry."""
+    return spec.name == "extent" or (isinstance(spec, Sdf.AttributeSpec) and isinstance(spec.default, Sdf.ValueBlock))
 
 
 def _is_empty(prim: Any) -> bool:
@@ -208,8 +219,10 @@ def _other_property(layer: Any, path: Any) -> Iterator[Change]:
 def _other_default(value: Any) -> Any:
     if isinstance(value, bool):
         return not value
-    if isinstance(value, int | float):
-        return _other_number(value) if isinstance(value, float) else value + 1
+    if isinstance(value, float):
+        return _other_number(value)
+    if isinstance(value, int):
+        return value + 1 if value < _MOST else value - 1
     if isinstance(value, str):
         return other_text(value)
     if isinstance(value, Sdf.AssetPath):

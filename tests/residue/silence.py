@@ -17,6 +17,7 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
+from pxr import Sdf, Usd
 
 from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
@@ -46,6 +47,8 @@ def silent_changes(
         silent = [target for target in targets if after.shows_the_same_as(before, target)]
         if silent and (after.only_words_it_otherwise_than(before) or (own == "mjcf" and is_same_to_mujoco(change, nothing, files))):
             silent = []  # the rotation of a ball's inertia; the axis of a free joint, a direction of another length
+        if silent and own == "usd" and (is_same_stage(change, nothing) or (is_computed(change) and after.is_the_same_as(before))):
+            silent = []  # what is inherited; moments that follow from the shapes
         yield change.what, silent
 
 
@@ -69,6 +72,10 @@ class Conversions:
     def shows_the_same_as(self, other: Conversions, target: str) -> bool:
         """Whether files, diagnostics and ledger are the same; the ledger, which takes longest, is only measured where the files are."""
         return self.written(target) == other.written(target) and self.lost(target) == other.lost(target)
+
+    def is_the_same_as(self, other: Conversions) -> bool:
+        """Whether the reader took the same robot from both."""
+        return self._robot == other._robot
 
     def only_words_it_otherwise_than(self, other: Conversions) -> bool:
         """Whether the reader saw the change, and kept it as a notation of a robot whose values are all the same, to rounding."""
@@ -112,6 +119,22 @@ def _files_of(robot: Mechanism, target: str, files: Files, report: Report) -> Ou
 def _ledger_of(robot: Mechanism, target: str, files: Files, report: Report) -> Outcome:
     result = pipeline.convert(robot, formats.by_name(target), Options(), files, report)
     return tuple((loss.element, loss.field, loss.before, loss.after) for loss in result.losses or ())
+
+
+def is_same_stage(a: Change, b: Change) -> bool:
+    """Whether two USD texts compose to the same stage, each without the files to which it refers."""
+    return _composed(a.data) == _composed(b.data)
+
+
+def _composed(data: bytes) -> str:
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    layer.ImportFromString(data.decode())
+    return str(Usd.Stage.Open(layer).Flatten().ExportToString())
+
+
+def is_computed(change: Change) -> bool:
+    """Whether the moments of a body are gone."""
+    return change.what.startswith("without /") and change.what.endswith(".physics:diagonalInertia")
 
 
 def is_same_to_mujoco(a: Change, b: Change, files: Files) -> bool:

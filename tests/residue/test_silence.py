@@ -10,6 +10,7 @@ import pytest
 from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report
+from hymeko_x.memory import remembering
 from hymeko_x.residue import measuring
 from hymeko_x.rewrite import Options
 from hymeko_x.source import Files, NoFiles, Package, Source
@@ -48,6 +49,7 @@ def test_each_change_of_a_concept_is_seen(robot: Path) -> None:
 
 @pytest.mark.full
 @pytest.mark.robots("urdf", "mjcf", "usd")
+@remembering()
 def test_every_change_of_a_real_robot_is_seen(robot: Path) -> None:
     data = robot.read_bytes()
     own = formats.of_input(robot.name, data).name
