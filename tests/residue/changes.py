@@ -180,8 +180,12 @@ def _says_no_more(layer: Any, spec: Any) -> bool:
 
 
 def _is_void(spec: Any) -> bool:
-    """Whether a property has no value, or one that is not of the robot: the box around a geometry."""
-    return spec.name == "extent" or (isinstance(spec, Sdf.AttributeSpec) and isinstance(spec.default, Sdf.ValueBlock))
+    """Whether a property has no value, or one that is not of the robot: the box around a geometry, how a closed ball joint is turned."""
+    if isinstance(spec, Sdf.AttributeSpec) and isinstance(spec.default, Sdf.ValueBlock):
+        return True
+    closes = spec.owner.properties.get("physics:excludeFromArticulation")
+    is_closed_ball = spec.owner.typeName == "PhysicsSphericalJoint" and closes is not None and closes.default
+    return spec.name == "extent" or (is_closed_ball and spec.name.startswith("physics:localRot"))
 
 
 def _is_empty(prim: Any) -> bool:
