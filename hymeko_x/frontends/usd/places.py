@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-_PRIM = re.compile(rb'^([ \t]*)(?:def|over|class)\b[ \t]*(?:[\w:]+[ \t]+)?"([^"\n]*)"', re.MULTILINE)
+_PRIM = re.compile(rb'\n([ \t]*)(?:def|over|class)\b[ \t]*(?:[\w:]+[ \t]+)?"([^"\n]*)"')
+"""The start of a prim. It begins with a newline, for which a search skips the long lines of meshes, unlike for `^`."""
 
 Lines = dict[tuple[int, str], int]
 """The line of each prim, by the line of its parent (0 = it has none) and its name: linear in the text, however deep it is."""
@@ -19,8 +20,8 @@ def lines_of_prims(data: bytes) -> Lines:
         indent = len(found[1].expandtabs(4))
         while above[-1][0] >= indent:
             above.pop()
-        line += data.count(b"\n", counted, found.start())
-        counted = found.start()
+        line += data.count(b"\n", counted, found.start(1))
+        counted = found.start(1)
         above.append((indent, lines.setdefault((above[-1][1], found[2].decode("utf-8", "replace")), line)))
     return lines
 
