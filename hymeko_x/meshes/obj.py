@@ -207,20 +207,20 @@ def _are_rows(faces: NDArray[Any], table: NDArray[Any]) -> bool:
 @remembered
 def obj_bytes(part: Submesh) -> bytes:
     """The part as a Wavefront OBJ file: points to float32 precision, texture coordinates, normals, triangles."""
-    text = _lines(b"v %.9g %.9g %.9g\n", part.points + 0.0)
+    text = _printed(b"v %.9g %.9g %.9g\n", part.points + 0.0)
     columns, corner = [part.faces], b"%d"
     if part.uv is not None:
-        text += _lines(b"vt %.9g %.9g\n", part.uv + 0.0)
+        text += _printed(b"vt %.9g %.9g\n", part.uv + 0.0)
         columns.append(part.faces if part.corners is None else part.corners)
         corner = b"%d/%d"
     if part.normals is not None:
-        text += _lines(b"vn %.9g %.9g %.9g\n", part.normals + 0.0)
+        text += _printed(b"vn %.9g %.9g %.9g\n", part.normals + 0.0)
         columns.append(part.faces if part.normal_corners is None else part.normal_corners)
         corner += b"/%d" if part.uv is not None else b"//%d"
-    return text + _lines(b"f " + b" ".join([corner] * 3) + b"\n", np.stack(columns, axis=2) + 1)
+    return text + _printed(b"f " + b" ".join([corner] * 3) + b"\n", np.stack(columns, axis=2) + 1)
 
 
-def _lines(line: bytes, rows: NDArray[Any]) -> bytes:
+def _printed(line: bytes, rows: NDArray[Any]) -> bytes:
     """A line for each of the rows, with its numbers."""
     return line * len(rows) % tuple(rows.ravel().tolist())
 
