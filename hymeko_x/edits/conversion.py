@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import os
-from contextlib import suppress
 from typing import TYPE_CHECKING, NamedTuple
 
-from msgspec.structs import replace
-
-from hymeko_x import codes, disk, formats, pipeline, targets
+from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.compare.contents import Contents
 from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.compare.ledger import TOLERANCE
@@ -26,6 +23,7 @@ from hymeko_x.edits.differences import (
     is_weight,
     is_without_inertial,
 )
+from hymeko_x.edits.guessing import Guess, best_guess
 from hymeko_x.edits.paths import with_same_paths
 from hymeko_x.edits.poses import with_edited_poses
 from hymeko_x.edits.unnamed import (
@@ -37,8 +35,16 @@ from hymeko_x.edits.unnamed import (
     with_same_numbers,
     without_counted_names,
 )
-from hymeko_x.edits.weights import computed_weights, heavier, with_computed_gains, with_least_masses, without_followed
-from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, Mechanism
+from hymeko_x.edits.weights import (
+    computed_weights,
+    heavier,
+    sprung_joints,
+    with_computed_gains,
+    with_least_masses,
+    with_springs_of,
+    without_followed,
+)
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Body, Shape
@@ -54,34 +60,20 @@ from hymeko_x.rewrite.decimals import shorten_computed
 from hymeko_x.source import PackageFiles
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Iterator, Set
+    from collections.abc import Container, Iterable, Iterator, Mapping, Set
 
     from hymeko_x.compare.contents import Fetch
     from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import JointView
     from hymeko_x.rewrite import Options
-    from hymeko_x.source import Files, Source
+    from hymeko_x.source import Source
 
-_BASES = ("fixed", "free")
-_ACTUATORS = ("none", "motor", "position", "velocity")
-_ASSETS = ("copy", "reference")
 _SINGLE = Tolerance(1e-9, 1e-6)
 """By how much a number that a program wrote in single precision differs at most, in its unit and as a part of it: no edit is so small."""
 _PLACING = frozenset({"drive", "mount", "sense"})
 """The kinds of edges that are called as what they place."""
 _LIKE_LINKS = frozenset({"joint", "frame", "loop"})
 """The kinds of elements that share their names with links in some formats."""
-
-
-class Guess(NamedTuple):
-    """How the first conversion may have been made, and what it gives."""
-
-    options: Options
-    place: pipeline.Place
-    image: Mechanism
-    files: Files
-    distance: int = 0
 
 
 class Left(NamedTuple):
@@ -102,6 +94,16 @@ class Left(NamedTuple):
         return len(self.names) + len(self.made_names) + len(self.edits), self.differences
 
 
+class Computed(NamedTuple):
+    """What the conversion computes from masses, and EDITED has otherwise.
+
+    ``old`` are the elements of ORIGINAL whose values, in words, EDITED has from before its edits; ``edits`` are of such values, in words.
+    """
+
+    old: Mapping[Id, str]
+    edits: tuple[str, ...]
+
+
 class Conversion:
     """The conversion of ORIGINAL into the format of EDITED, made again, and once more after each round of edits."""
 
@@ -118,8 +120,7 @@ class Conversion:
         self._first_original = Mechanism("")
         self._asked: frozenset[tuple[Id, str, str | None]] | None = None
         self._homes: dict[Id, Id] = {}
-        self.computed: list[Id] = []
-        """The actuators whose gains the conversion computes, and computes otherwise after the edits."""
+        self.computed = Computed({}, ())
 
     @property
     def is_known(self) -> bool:
@@ -137,7 +138,7 @@ class Conversion:
         self._used = guess
         residue = residue_of(mechanism, guess.image)
         self._homes = homes = dict(residue.alignment.names)
-        self.edited, self.computed = self._comparable(guess.image, fetch_from(guess.files))
+        self.edited, self.computed = self._with_computed(self._comparable(guess.image, fetch_from(guess.files)), guess.image)
         if self._asked is None:
             self._asked = frozenset(map(aim, diff(guess.image, self.edited, TOLERANCE)))
         names = self._renames(guess.image)
@@ -147,22 +148,39 @@ class Conversion:
         named = with_new_names(restored, {new: old for new, old in own.items() if old != WORLD})
         return with_edited_poses(self._with_transmissions(named), guess.image, self.edited, self.format)
 
-    def _comparable(self, image: Mechanism, fetch: Fetch) -> tuple[Mechanism, list[Id]]:
-        """EDITED with the image's classes, numbers, files and computed values where no edit is of them; and actuators with such values."""
+    def _comparable(self, image: Mechanism, fetch: Fetch) -> Mechanism:
+        """EDITED with the image's classes, numbers and files where no edit is of them."""
         if self._first_image is None:
             self._first_image, self._first_original = image, self.mechanism
         read = with_made_classes(self._read, image, self._first_original, self.format)
         bodies, edges = (self._in_image(of(self.mechanism)) for of in (unnamed_bodies, unnamed_edges))
         numbered = with_same_edges(with_same_numbers(read, image, bodies), image, edges)
         placed = with_same_paths(Contents(numbered, fetch_from(self.files)), Contents(image, fetch))
-        edited = without_counted_names(with_same_assets(placed, image), image)
+        return without_counted_names(with_same_assets(placed, image), image)
+
+    def _with_computed(self, edited: Mechanism, image: Mechanism) -> tuple[Mechanism, Computed]:
+        """EDITED with the values that the conversion computes as it does now, where no edit is of them; and the elements of others."""
+        assert self._first_image is not None
         sources = {key: self.mechanism.graph.vertices.get(self._homes.get(key, key)) for key, _ in edited.vertices(Actuator)}
-        return with_computed_gains(with_least_masses(edited, image), self._first_image, image, sources)
+        edited, actuators = with_computed_gains(with_least_masses(edited, image), self._first_image, image, sources)
+        joints = sprung_joints(image, self.mechanism, self._homes, self._engine)
+        sprung = with_springs_of(image, edited, joints)
+        others = {edit.element for edit in diff(sprung, edited, _SINGLE)}
+        edits = [edit for edit in diff(with_springs_of(self._first_image, edited, joints), edited, _SINGLE) if edit.element in others]
+        springs = others.difference(edit.element for edit in edits)
+        old = {**dict.fromkeys(actuators, "the gains"), **dict.fromkeys(sorted(springs, key=str), "stiffness and damping")}
+        return sprung, Computed({self._homes.get(key, key): words for key, words in old.items()}, tuple(map(str, edits)))
+
+    def _engine(self) -> Mechanism:
+        """ORIGINAL with what its engine computes of it."""
+        return pipeline.completed(self.mechanism, self.format, self.source.files, Report())
 
     def _first(self) -> Guess:
         """How the first conversion may have been made."""
-        guess = self._found_out(self._guess(self.options, pipeline.Place(self.folder, package=disk.package_uri(self.folder))))
-        self._report_found(self.options, guess)
+        place = pipeline.Place(self.folder, package=disk.package_uri(self.folder))
+        guess = best_guess(self._guess(self.options, place), self.edited, self.format, self._guess)
+        if found := guess.given(self.options):
+            self.report.note(codes.OPTIONS_FOUND, f"the file was converted with {' '.join(found)}, as far as can be seen")
         return guess
 
     def _again(self, guess: Guess) -> Guess:
@@ -318,68 +336,11 @@ class Conversion:
         files = PackageFiles(package, self.source.files)
         return Guess(options, place, pipeline.read_back(package, self.format, files), files)
 
-    def _found_out(self, first: Guess) -> Guess:
-        """The guess with the fewest differences, one option after the other; only those that may explain some are tried."""
-        best = first
-        for others in (self._other_files, self._other_bases, self._other_actuators, self._other_targets):
-            for options, place in others(best):
-                with suppress(ModuleNotFoundError):  # of a target whose rules ask an engine that is not installed
-                    best = min(best, self._guess(options, place), key=lambda guess: guess.distance)
-        return best
-
-    def _other_files(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
-        """Where files are called otherwise: beside the output or where they are, and in a folder of the output's name."""
-        mine, theirs = ({part.uri for _, part in robot.assets() if part.uri} for robot in (guess.image, self.edited))
-        if theirs <= mine:
-            return
-        for assets in _ASSETS:
-            yield guess.options, replace(guess.place, assets=assets)
-        first = next(iter(sorted(theirs - mine))).partition("/")[0]
-        yield replace(guess.options, within=f"{first}/"), replace(guess.place, assets="copy")
-
-    def _other_bases(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
-        """Where a body is joined to the world in one of the two only, which may be a body by that name."""
-        mine, theirs = ([(view.child, view.joint.dofs) for view in _on_world(robot)] for robot in (guess.image, self.edited))
-        if guess.options.base is None and mine != theirs:
-            yield from ((replace(guess.options, base=base), guess.place) for base in _BASES)
-
-    def _other_actuators(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
-        """Where one of the two has actuators that the other one does not have."""
-        mine, theirs = ({(key, part.kind) for key, part in robot.vertices(Actuator)} for robot in (guess.image, self.edited))
-        if guess.options.actuators is None and mine != theirs:
-            kinds = _ACTUATORS if len(mine) > 1 else _ACTUATORS[1:]  # one that is gone was removed
-            yield from ((replace(guess.options, actuators=kind), guess.place) for kind in kinds)
-
-    def _other_targets(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
-        """Where the two differ in anything. Of targets with the same rules one tells as much as all of them."""
-        if guess.options.target is None and guess.distance:
-            of_rules = {(target.rules, *target.defaults.items()): target for target in reversed(targets.of_format(self.format))}
-            for target in reversed(of_rules.values()):
-                yield replace(guess.options, target=target.name), guess.place
-
-    def _report_found(self, options: Options, guess: Guess) -> None:
-        names = {
-            "base": guess.options.base,
-            "actuators": guess.options.actuators,
-            "for": guess.options.target,
-            "assets": guess.place.assets,
-        }
-        given = {"base": options.base, "actuators": options.actuators, "for": options.target, "assets": None}
-        found = [f"--{name} {value}" for name, value in names.items() if value != given[name]]
-        if found:
-            self.report.note(codes.OPTIONS_FOUND, f"the file was converted with {' '.join(found)}, as far as can be seen")
-
 
 def _is_beside(new: Id, old: Id) -> bool:
     """Whether one of two names is what an element gets beside a link of the other name, so that it tells of no edit."""
     mark = f"_{old.kind}"
     return old.kind in _LIKE_LINKS and new.name.removesuffix(mark) == old.name.removesuffix(mark)
-
-
-def _on_world(robot: Mechanism) -> Iterator[JointView]:
-    """The joints that join bodies to the world, or to a body that a format without a world has in its place."""
-    for world in (WORLD, WORLD_LINK):
-        yield from robot.children.get(world, ())
 
 
 class Names(NamedTuple):

@@ -13,7 +13,7 @@ from hymeko_x import codes, pipeline
 from hymeko_x.compare.diff import Difference, diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.compare.relevance import is_idle
-from hymeko_x.diagnostics import Origin, Refusal, Report, counted, listed, refuse
+from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.edits.conversion import Conversion
 from hymeko_x.edits.differences import is_given_again, is_inherited, is_weight
 from hymeko_x.edits.paths import with_new_assets
@@ -162,12 +162,12 @@ def _report_left(found: _Round, conversion: Conversion, original: Source, format
     left = [] if lost else found.left.edits
     unmet = [words for element, words in conversion.unmet(left, of_extras=not is_changed) if element not in known]
     unmet += [] if is_changed else conversion.lost_colours()
-    missing = [f"the edit did not arrive: {words}" for words in (*found.left.names, *left)]
+    computed = [f"{words}, which follows from masses in the original" for words in conversion.computed.edits]
+    missing = [f"the edit did not arrive: {words}" for words in (*found.left.names, *left, *computed)]
     _report_missing([*dict.fromkeys([*missing, *unmet])], original, report)
-    if conversion.computed:
-        names = listed([f"'{key.name}'" for key in conversion.computed], 2)
-        message = f"gains of {counted(len(conversion.computed), 'actuator')} follow from masses, and are old in the edited file: {names}"
-        report.note(codes.EDIT_DROPPED, message, Origin(original.name), hint="convert the original again")
+    for key, words in conversion.computed.old.items():
+        message = f"{words} of {key} follow from masses, and are old in the edited file"
+        report.note(codes.EDIT_DROPPED, message, found.before.origin(key) or Origin(original.name), hint="convert the original again")
     for name in dict.fromkeys([*found.left.made_names, *(conversion.lost_names() if is_changed else ())]):
         hint = f"{format.name} has no name for it there"
         report.note(codes.EDIT_DROPPED, f"the edit did not arrive: {name}", Origin(original.name), hint=hint)

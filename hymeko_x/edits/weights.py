@@ -1,21 +1,23 @@
-"""What follows from edits: inertials of shapes where a file states none, and gains that a conversion computes from masses."""
+"""What follows from edits: inertials of shapes where a file states none, and gains and springs that are computed from masses."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.parts import Actuator, Body, Inertial, Role
+from hymeko_x.ir.parts import Actuator, Body, Inertial, Joint, Role
 from hymeko_x.ir.solids import joined
 from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.densities import Solids
 from hymeko_x.rewrite.inertia import LEAST, LEAST_TENSOR
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Mapping
+    from collections.abc import Callable, Container, Iterable, Mapping
 
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotEdge
     from hymeko_x.ir.solids import Solid
 
 _SINGLE = 1e-5
@@ -52,6 +54,38 @@ def with_computed_gains(edited: Mechanism, first: Mechanism, now: Mechanism, own
         if found is not None and found != part == first.graph.vertices.get(key) and not is_own:
             computed[key] = found
     return edited.replace(vertices=computed), list(computed)
+
+
+def sprung_joints(image: Mechanism, original: Mechanism, homes: Mapping[Id, Id], engine: Callable[[], Mechanism]) -> set[Id]:
+    """The joints of the image whose springs the engine of ORIGINAL computes, whatever stiffness and damping it states.
+
+    ``homes`` are the ids in ORIGINAL of what has another one in the image, and ``engine`` gives ORIGINAL with what is computed of it.
+    """
+    others: dict[Id, Id] = {}
+    for view in image.joints.values():
+        source = original.joints.get(homes.get(view.id, view.id))
+        if source is not None and any(there != own and any(there) for there, own in zip(_springs(view), _springs(source), strict=False)):
+            others[view.id] = source.id
+    if not others:
+        return set()
+    computed = engine().joints
+    return {key for key, home in others.items() if _springs(computed[home]) != _springs(original.joints[home])}
+
+
+def with_springs_of(robot: Mechanism, edited: Mechanism, joints: Container[Id]) -> Mechanism:
+    """The edited robot, in which these joints have the stiffness and damping that they have in the other one."""
+    edges: dict[Id, RobotEdge] = {}
+    for view in edited.joints.values():
+        other = robot.joints.get(view.id)
+        if view.id in joints and other is not None and len(other.joint.dofs) == len(view.joint.dofs):
+            dofs = [replace(dof, stiffness=k, damping=d) for dof, (k, d) in zip(view.joint.dofs, _springs(other), strict=True)]
+            edges[view.id] = replace(edited.graph.edges[view.id], data=Joint(tuple(dofs)))
+    return edited.replace(edges=edges)
+
+
+def _springs(view: JointView) -> list[tuple[float, float]]:
+    """Stiffness and damping of each dof."""
+    return [(dof.stiffness, dof.damping) for dof in view.joint.dofs]
 
 
 def with_least_masses(edited: Mechanism, image: Mechanism) -> Mechanism:

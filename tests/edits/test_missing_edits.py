@@ -248,11 +248,63 @@ def test_gains_that_follow_from_an_edited_mass_are_a_note(name: str, old: str, n
     (tmp_path / name).write_text(text.replace(old, new))
     report = hx.update(tmp_path / "lift.urdf", tmp_path / name).report
     called = "m" if name == "lift.xml" else "j"
-    words = f"gains of 1 actuator follow from masses, and are old in the edited file: '{called}'"
+    words = f"the gains of actuator '{called}' follow from masses, and are old in the edited file"
     assert [(row.severity.name, row.message) for row in report if row.code.id == "HX118"] == [("NOTE", words)]
     assert (tmp_path / "lift.urdf").read_text() == LIFT.replace('mass value="1"', 'mass value="2"')
     hx.convert(tmp_path / "lift.urdf", tmp_path / name)
     assert [row for row in hx.update(tmp_path / "lift.urdf", tmp_path / name).report if row.code.id == "HX118"] == []
+
+
+FLAP = """<mujoco>
+  <default><joint springdamper="0.1 0.5" stiffness="3"/></default>
+  <worldbody>
+    <body name="box"><freejoint/><geom name="g" size="0.1" mass="3"/>
+      <body name="flap" pos="0.2 0 0">
+        <joint name="hinge" axis="0 1 0"/>
+        <inertial pos="0.1 0 0" mass="1" diaginertia="0.01 0.01 0.01"/>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+"""A spring of which MuJoCo computes stiffness and damping from masses, whatever stiffness is stated."""
+
+
+@pytest.mark.unread("HX105", "HX106", "HX114")
+def test_springs_that_follow_from_an_edited_mass_are_a_note(tmp_path: Path) -> None:
+    original, converted = tmp_path / "flap.xml", tmp_path / "flap.sdf"
+    original.write_text(FLAP)
+    hx.convert(original, converted)
+    converted.write_text(converted.read_text().replace("<mass>1</mass>", "<mass>2</mass>"))
+    report = hx.update(original, converted).report
+    words = "stiffness and damping of joint 'hinge' follow from masses, and are old in the edited file"
+    assert [(row.severity.name, row.message, row.origin and row.origin.line) for row in report if row.code.id == "HX118"] == [
+        ("NOTE", words, 6)
+    ]
+    after = FLAP.replace('mass="1"', 'mass="2"')
+    assert original.read_text() == after
+    again = hx.update(original, converted)
+    assert again.edits == ()
+    told = [row.message for row in again.report if row.code.id == "HX118"]
+    assert len(told) == 2
+    assert all(message.endswith("which follows from masses in the original") for message in told)
+    assert original.read_text() == after
+    hx.convert(original, converted)
+    assert [row for row in hx.update(original, converted).report if row.code.id == "HX118"] == []
+
+
+@pytest.mark.unread("HX106", "HX114")
+def test_the_edit_of_a_spring_that_follows_from_masses_is_reported(tmp_path: Path) -> None:
+    original, converted = tmp_path / "flap.xml", tmp_path / "flap.sdf"
+    original.write_text(FLAP)
+    hx.convert(original, converted)
+    text = converted.read_text()
+    stiffness = text.partition("<spring_stiffness>")[2].partition("<")[0]
+    converted.write_text(text.replace(f"<spring_stiffness>{stiffness}", "<spring_stiffness>7"))
+    report = hx.update(original, converted).report
+    words = f"the edit did not arrive: joint 'hinge' dofs[0].stiffness: {stiffness} -> 7, which follows from masses in the original"
+    assert [(row.severity.name, row.message) for row in report if row.code.id == "HX118"] == [("WARNING", words)]
+    assert original.read_text() == FLAP
 
 
 BASE = """<sdf version="1.9">
