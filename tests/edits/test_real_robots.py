@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import random
 import re
+from difflib import SequenceMatcher
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -130,6 +131,37 @@ def changed_lines(found: Updated) -> int:
     return max(sum(line[:1] == sign for line in lines) for sign in "+-")
 
 
+def needed_lines(robot: Converted, found: Updated, there: Mechanism, told: str) -> int:
+    """How many lines of the original are other ones; of several places without which the edit does not arrive the longest counts.
+
+    A mass needs two places in MJCF with ``inertiafromgeom="true"``, with which MuJoCo passes over every stated inertial.
+    """
+    name = robot.source.name
+    if set(found.changed) != {name}:
+        return changed_lines(found)
+    old, new = (texts[name].decode().splitlines(keepends=True) for texts in (found.before, found.changed))
+    places = [place for place in SequenceMatcher(None, old, new, autojunk=False).get_opcodes() if place[0] != "equal"]
+    if len(places) < 2:
+        return changed_lines(found)
+    needed, spare = [0], 0
+    for _, start, end, after, until in places:
+        text = "".join([*new[:after], *old[start:end], *new[until:]]).encode()
+        lines = max(end - start, until - after)
+        if _arrives(robot, robot.with_edits(replace(found, changed={name: text})), there, told):
+            spare += lines
+        else:
+            needed.append(lines)
+    return max(needed) + spare
+
+
+def _arrives(robot: Converted, original: Source, there: Mechanism, told: str) -> bool:
+    """Whether the original is converted to what was edited."""
+    try:
+        return unreported(robot.converted_again(original), there, told) == []
+    except Refusal:
+        return False
+
+
 def judged(robot: Converted, what: str, edited: Source) -> int | None:
     """How many lines an edit changes in the original; None where an element is printed anew, or a reader refuses the edit.
 
@@ -149,12 +181,12 @@ def judged(robot: Converted, what: str, edited: Source) -> int | None:
     assert unreported(robot.converted_again(after), there, told) == [], what
     again = update(after, robot.format, edited, robot.there, Options(), Report())
     assert [str(edit) for edit in again.edits] == [], what
-    return None if any(diagnostic.code.id == "HX108" for diagnostic in report) else changed_lines(found)
+    return None if any(diagnostic.code.id == "HX108" for diagnostic in report) else needed_lines(robot, found, there, told)
 
 
 @remembering()
 def judge(path: Path, target: str, number: int) -> None:
-    """So many edits, each by itself; half of those of one value change one line at most."""
+    """So many edits, each by itself; half of those of one value change one line at most, or one at each place that they need."""
     robot = converted(path, target)
     target = robot.there.name
     chance, few = random.Random(path.name), list[int]()
