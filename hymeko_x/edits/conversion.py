@@ -331,10 +331,11 @@ class Conversion:
         return guess._replace(distance=self._distance(guess.image))
 
     def _converted(self, options: Options, place: pipeline.Place) -> Guess:
-        """ORIGINAL as the format has it. Raises: as :func:`hymeko_x.pipeline.write`."""
-        package = pipeline.write(self.mechanism, self.format, options, self.source.files, Report(), place)
+        """ORIGINAL as the format has it, in the container that is fastest. Raises: as :func:`hymeko_x.pipeline.write`."""
+        format = formats.by_name(self.format.fast_container or self.format.name)
+        package = pipeline.write(self.mechanism, format, options, self.source.files, Report(), place)
         files = PackageFiles(package, self.source.files)
-        return Guess(options, place, pipeline.read_back(package, self.format, files), files)
+        return Guess(options, place, pipeline.read_back(package, format, files), files)
 
 
 def _is_beside(new: Id, old: Id) -> bool:

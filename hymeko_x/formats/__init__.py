@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 _XML_TOKENS = "hymeko_x.corpus.lengths:xml_tokens"
 _XML_COMMENT = (rb"(?:<\?xml[^>]*\?>\n)?", "<!-- {} -->")
 
-
 HYMEKO = Format(
     "hymeko",
     "HyMeKo hypergraph text",
@@ -164,6 +163,7 @@ USD = Format(
     outline="hymeko_x.frontends.usd.outline:outline",
     has_variants=True,
     layout_options=frozenset({"layout", "nested"}),
+    fast_container="usdc",
     pack="hymeko_x.backends.usd.files:pack_for_usd",
     refits="hymeko_x.formats.usd.articulations:fit_articulation",
     reference="hymeko_x.verify.readers.usd",

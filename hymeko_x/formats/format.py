@@ -55,6 +55,8 @@ class Format(Struct, frozen=True):
     """Whether it represents every mechanism exactly, so that it carries no residue and keeps what only another format understands."""
     container_of: str = ""
     """The name of the format of which it is another container, with the same content and the same extras (usdc, usdz; json)."""
+    fast_container: str = ""
+    """The name of the container of it that is written and read fastest, for conversions whose text nobody reads (usdc); empty: itself."""
     expands_to: str = ""
     """The name of the format that its files expand to (xacro)."""
     vocabulary: str | None = None
