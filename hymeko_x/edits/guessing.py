@@ -44,22 +44,31 @@ class Guess(NamedTuple):
 def best_guess(first: Guess, edited: Mechanism, format: Format, again: Callable[[Options, pipeline.Place], Guess]) -> Guess:
     """The guess with the fewest differences, one option after the other; only those that may explain some are tried."""
     best = first
-    for others in (_other_files, _other_bases, _other_actuators, _other_targets):
+    for others in (_other_files, _other_folders, _other_bases, _other_actuators, _other_targets):
         for options, place in others(best, edited, format):
             with suppress(ModuleNotFoundError):  # of a target whose rules ask an engine that is not installed
                 best = min(best, again(options, place), key=lambda guess: guess.distance)
     return best
 
 
-def _other_files(guess: Guess, edited: Mechanism, _: Format) -> Iterator[tuple[Options, pipeline.Place]]:
-    """Where files are called otherwise: beside the output or where they are, and in a folder of the output's name."""
+def _other_files(guess: Guess, edited: Mechanism, format: Format) -> Iterator[tuple[Options, pipeline.Place]]:
+    """Where files are called otherwise: they may be beside the output, or where they are."""
+    if _other_paths(guess, edited):
+        yield from (
+            (guess.options, replace(guess.place, assets=assets)) for assets in _ASSETS if assets != (guess.place.assets or format.assets)
+        )
+
+
+def _other_folders(guess: Guess, edited: Mechanism, _: Format) -> Iterator[tuple[Options, pipeline.Place]]:
+    """Where files are still called otherwise: they may be in a folder of the output's name."""
+    if paths := _other_paths(guess, edited):
+        yield replace(guess.options, within=f"{paths[0].partition('/')[0]}/"), replace(guess.place, assets="copy")
+
+
+def _other_paths(guess: Guess, edited: Mechanism) -> list[str]:
+    """The paths of meshes and images that the edited file alone has, in order."""
     mine, theirs = ({part.uri for _, part in robot.assets() if part.uri} for robot in (guess.image, edited))
-    if theirs <= mine:
-        return
-    for assets in _ASSETS:
-        yield guess.options, replace(guess.place, assets=assets)
-    first = next(iter(sorted(theirs - mine))).partition("/")[0]
-    yield replace(guess.options, within=f"{first}/"), replace(guess.place, assets="copy")
+    return sorted(theirs - mine)
 
 
 def _other_bases(guess: Guess, edited: Mechanism, _: Format) -> Iterator[tuple[Options, pipeline.Place]]:
