@@ -96,14 +96,14 @@ def _appearance_of(mesh: Any) -> tuple[Appearance | None, NDArray[np.float64] | 
     name = str(getattr(material, "name", None) or "")
     if type(material).__name__ == "SimpleMaterial":
         return _simple_appearance(name, material, visual.uv)
-    image = _png(material.baseColorTexture)
+    image = _bytes_of(material.baseColorTexture)
     appearance = Appearance(name, None if image else _rgba(material.main_color), image)
     return appearance, _uv(visual.uv) if image else None
 
 
 def _simple_appearance(name: str, material: Any, uv: Any) -> tuple[Appearance | None, NDArray[np.float64] | None]:
     """The appearance of an OBJ material. One without colour and without a named image is what trimesh makes up itself."""
-    image = _png(material.image) if material.image is not None and "file_path" in material.image.info else None
+    image = _bytes_of(material.image) if material.image is not None and "file_path" in material.image.info else None
     color, alpha = material.kwargs.get("kd"), opacity(material.kwargs.get("d", ()), material.kwargs.get("tr", ()))
     rgba = (float(color[0]), float(color[1]), float(color[2]), alpha) if isinstance(color, list) and len(color) == 3 else None
     if image is None and rgba is None:
@@ -123,12 +123,12 @@ def _rgba(color: Any) -> Rgba | None:
     return (r, g, b, a)
 
 
-def _png(image: Any) -> bytes | None:
-    """The image as PNG bytes: those of the file where it is PNG and was not decoded yet, else encoded anew."""
+def _bytes_of(image: Any) -> bytes | None:
+    """The bytes of the image's file where it is PNG or JPEG and was not decoded yet, else the image encoded as PNG."""
     if image is None:
         return None
     stream = getattr(image, "fp", None)
-    if image.format == "PNG" and isinstance(stream, io.BytesIO):
+    if image.format in ("PNG", "JPEG") and isinstance(stream, io.BytesIO):
         data = stream.getvalue()
         image.load()
         return data
