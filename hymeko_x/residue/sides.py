@@ -133,8 +133,10 @@ def _notations(image: Notations, source: Notations, forgotten: set[str]) -> Iter
 
 
 def _stereotypes(image: Mechanism, source: Mechanism) -> Iterator[tuple[Id, tuple[str, ...]]]:
-    for key in dict.fromkeys([*source.stereotypes, *image.stereotypes]):
-        if image.stereotypes.get(key, ()) != source.stereotypes.get(key, ()):
+    """The stereotypes of the source that the image has not; macros that another format found anew may have their names by chance."""
+    mine = image.stereotypes if image.source.format == source.source.format else {}
+    for key in dict.fromkeys([*source.stereotypes, *mine]):
+        if mine.get(key, ()) != source.stereotypes.get(key, ()):
             yield key, source.stereotypes.get(key, ())
 
 
@@ -167,7 +169,8 @@ def with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mech
             notations.get(key, {}).pop(name, None)
         elif key in there:
             notations.setdefault(key, {})[name] = text
-    stereotypes = {} if sides.is_plain else {**image.stereotypes, **dict(sides.stereotypes)}
+    is_own = image.source.format == residue.source.format and not sides.is_plain
+    stereotypes = {**(image.stereotypes if is_own else {}), **dict(sides.stereotypes)}
     layout = image.layout if residue.layout is None else laid_out(image.layout, residue.layout, set(residue.unplaced))
     return replace(
         mechanism,

@@ -62,3 +62,41 @@ def test_a_value_in_a_macro_that_is_used_twice_is_edited_in_one_element_alone(tm
 def test_an_element_of_a_macro_with_the_name_of_another_block_is_edited(tmp_path: Path) -> None:
     arm = ARM.replace("  <xacro:finger s", '  <gazebo><joint name="left_knuckle"/><joint name="left_knuckle"/></gazebo>\n  <xacro:finger s')
     assert updated(tmp_path, ('upper="1"', 'upper="2"'), arm) == (arm.replace('upper="1"', 'upper="2"'), [])
+
+
+LEGS = """<mujoco model="legs">
+  <default>
+    <default class="visual"><geom contype="0" conaffinity="0" group="2" rgba="0.2 0.2 0.2 1"/></default>
+  </default>
+  <worldbody>
+    <body name="trunk">
+      <inertial pos="0 0 0" mass="3" diaginertia="0.01 0.01 0.01"/>
+      <geom class="visual" type="box" size="0.1 0.1 0.1"/>
+      <body name="left">
+        <joint name="hip" axis="0 1 0" range="-60 60"/>
+        <inertial pos="0 0 0" mass="2" diaginertia="0.02 0.02 0.01"/>
+        <geom class="visual" type="box" size="0.1 0.1 0.1"/>
+      </body>
+      <body name="right">
+        <geom name="pad" size="0.1" mass="1"/>
+        <geom class="visual" type="box" size="0.1 0.1 0.1"/>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.unread("HX101", "HX105", "HX106", "HX114")
+def test_a_macro_that_is_called_as_a_class_of_the_original_is_not_that_class(tmp_path: Path) -> None:
+    """The visuals are a macro of the xacro file, and an edited file may have them without it."""
+    original, there = tmp_path / "legs.xml", tmp_path / "legs.xacro"
+    original.write_text(LEGS)
+    hx.convert(original, there)
+    assert '<xacro:macro name="visual"' in there.read_text()
+    hx.convert(original, tmp_path / "legs.urdf")
+    text = (tmp_path / "legs.urdf").read_text()
+    assert text.count('mass value="3"') == 1
+    there.write_text(text.replace('mass value="3"', 'mass value="4"'))
+    hx.update(original, there)
+    assert original.read_text() == LEGS.replace('mass="3"', 'mass="4"')
