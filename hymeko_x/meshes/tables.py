@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from hymeko_x.memory import remembered
 from hymeko_x.meshes.numerals import numbers_in
 from hymeko_x.meshes.obj import words_of
 from hymeko_x.meshes.polygons import MOST_CORNERS, cut, leaves_polygons_out
@@ -38,7 +39,11 @@ def read_mesh(data: bytes, suffix: str) -> Submesh | None:
     readers = {".obj": _read_obj, ".stl": _read_stl, ".msh": _read_msh}
     if suffix not in readers:
         return None
-    part = readers[suffix](data)
+    return _checked(readers[suffix](data))
+
+
+def _checked(part: Submesh) -> Submesh:
+    """The same solid. Raises: Unreadable where it is none."""
     if not len(part.faces):
         raise Unreadable("it has no triangles")
     if len(part.faces) > MOST_FACES:
@@ -50,6 +55,7 @@ def read_mesh(data: bytes, suffix: str) -> Submesh | None:
     return part
 
 
+@remembered
 def read_otherwise(data: bytes, suffix: str) -> tuple[Submesh, str] | None:
     """A file that other programs read as another solid, as MuJoCo reads it, and why; None where they see the same.
 
@@ -58,21 +64,20 @@ def read_otherwise(data: bytes, suffix: str) -> tuple[Submesh, str] | None:
     if suffix != ".obj" or not (_POLYGON.search(data) or len(_OBJECT.findall(data)) > 1):
         return None
     lines = _lines_of(data)
-    part = read_mesh(data, suffix)
-    if part is not None and lines.has_more:
+    solid, polygons = _solid_of(lines)
+    part = _checked(solid)
+    if lines.has_more:
         return part, "has several objects, of which MuJoCo reads the first"
-    if part is not None and leaves_polygons_out(data):
+    if leaves_polygons_out(data):
         return part, f"has polygons of more than {MOST_CORNERS} corners, which MuJoCo leaves out"
-    if part is not None and not _are_flat_and_convex(lines, part.points):
+    if not _are_flat_and_convex(part.points, polygons):
         return part, "has polygons that are bent or concave; they are cut as MuJoCo cuts them"
     return None
 
 
-def _are_flat_and_convex(lines: _Obj, points: NDArray[np.float64]) -> bool:
+def _are_flat_and_convex(points: NDArray[np.float64], polygons: _Polygons) -> bool:
     """Whether the areas of the triangles of each polygon add up to its own, cut as a fan from its first corner and as MuJoCo does."""
-    sizes, fields = _corners(lines)
-    corners = fields[:, 0]
-    rows, owners = cut(points.astype(np.float32), sizes, corners)
+    sizes, corners, rows, owners = polygons
     fan = fans(sizes, np.arange(len(corners)))
     fan_owners = np.repeat(np.arange(len(sizes)), np.maximum(sizes - 2, 0))
     areas = [_areas(points, corners[table], whose, len(sizes)) for table, whose in ((rows, owners), (fan, fan_owners))]
@@ -131,8 +136,23 @@ class _Obj(NamedTuple):
     """Whether there are faces of other objects."""
 
 
+class _Polygons(NamedTuple):
+    """The faces of a file: the number of corners of each, the points of all corners, and the triangles that MuJoCo cuts them into.
+
+    ``rows`` (n, 3) are places in ``corners``, ``owners`` (n,) the numbers of the polygons.
+    """
+
+    sizes: NDArray[np.intp]
+    corners: NDArray[np.int64]
+    rows: NDArray[np.intp]
+    owners: NDArray[np.intp]
+
+
 def _read_obj(data: bytes) -> Submesh:
-    lines = _lines_of(data)
+    return _solid_of(_lines_of(data))[0]
+
+
+def _solid_of(lines: _Obj) -> tuple[Submesh, _Polygons]:
     try:
         points = _table(lines.points, _SOLID)
         uv = _table(lines.places, 2)
@@ -145,9 +165,10 @@ def _read_obj(data: bytes) -> Submesh:
         raise Unreadable("a face has a point that does not exist")
     if not len(sizes):
         raise Unreadable("it has no triangles")
-    rows, _ = cut(points.astype(np.float32), sizes, corners)
+    rows, owners = cut(points.astype(np.float32), sizes, corners)
     places, turns = _rows_of(uv, fields[:, 1], rows), _rows_of(shading, fields[:, 2], rows)
-    return Submesh(points, corners[rows], None if places is None else uv, None, places, None if turns is None else shading, turns)
+    shown, shaded = None if places is None else uv, None if turns is None else shading
+    return Submesh(points, corners[rows], shown, None, places, shaded, turns), _Polygons(sizes, corners, rows, owners)
 
 
 def _rows_of(table: NDArray[np.float64], column: NDArray[np.int64], rows: NDArray[np.intp]) -> NDArray[np.int64] | None:
