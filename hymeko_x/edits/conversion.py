@@ -144,7 +144,8 @@ class Conversion:
         names = self._renames(guess.image)
         edited = without_followed(self._under(names, self._with_inertials(guess.image), guess.image), guess.image, self._bare_bodies())
         restored = restore(edited, residue, notes).mechanism
-        own = {new: homes.get(old, old) for new, old in names.given.items() if not _is_beside(new, old)}
+        given = names.given.items()
+        own = {new: homes.get(old, old) for new, old in given if not (_is_beside(new, old) or self._is_after_body(new, old, guess.image))}
         named = with_new_names(restored, {new: old for new, old in own.items() if old != WORLD})
         return with_edited_poses(self._with_transmissions(named), guess.image, self.edited, self.format)
 
@@ -278,6 +279,12 @@ class Conversion:
         is_of_body = joint is not None and len(joint.joint.dofs) != 1
         is_named = home in self.mechanism.graph and self.mechanism.notation(home, UNNAMED) is None
         return is_of_body or not is_named or _is_beside(new, old)
+
+    def _is_after_body(self, new: Id, old: Id, image: Mechanism) -> bool:
+        """Whether a joint is called after its body in both files, and has a name of its own in ORIGINAL."""
+        views = self.edited.joints.get(new), image.joints.get(old)
+        has_own = self._homes.get(old, old).name != old.name
+        return has_own and all(view is not None and view.id.name == view.child.name for view in views)
 
     def _is_called_anew(self, new: Id, old: Id) -> bool:
         """Whether EDITED has a name for an element that has none by its own words, and that is not called after its body."""

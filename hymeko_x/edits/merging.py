@@ -172,8 +172,8 @@ class _Merge:
         return None if after is None else (after, False)
 
     def _beside(self, block: Block, around: Block) -> Block | None:
-        """The author's block, if it stands in what its print stands in."""
-        place = None if block in self.moved else self.kept.get(block)
+        """The author's block, if it stands in what its print stands in; none for metadata in the head of that."""
+        place = None if block in self.moved or block.tag == self.own.style.head_tag else self.kept.get(block)
         return place if place is not None and place.parent is not None and place.parent.tag == around.tag else None
 
     def _insert_beside(self, text: bytes, place: Block, behind: bool) -> None:
@@ -183,7 +183,8 @@ class _Merge:
             at = place.end if behind else place.start
             splices.put(at, at, self._at(text, splices, b""))
         elif behind:
-            splices.put(end, end, splices.newline + indent + self._at(text, splices, indent))
+            gap = splices.newline if splices.stands_apart(place) else b""
+            splices.put(end, end, gap + splices.newline + indent + self._at(text, splices, indent))
         else:
             start = place.start - len(indent)
             splices.put(start, start, indent + self._at(text, splices, indent) + splices.newline)

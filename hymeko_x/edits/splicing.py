@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from hymeko_x.outline import Block, Style
 
 _BLANKS = re.compile(rb"[ \t]*")
+_EMPTY_LINE = re.compile(rb"\n[ \t]*\r?\n")
 
 
 class Edit(Struct, frozen=True, order=True):
@@ -72,6 +74,13 @@ class Splices(Struct):
         found = re.compile(self.style.trailing).match(self.data, place)
         end = place if found is None else found.end()
         return end if self.data[end : end + 1] in (b"\n", b"\r", b"") else None
+
+    def stands_apart(self, block: Block) -> bool:
+        """Whether empty lines are between a block and those before and behind it in the same one."""
+        row = [] if block.parent is None else [other for other in block.parent.children if other.tag != self.style.head_tag]
+        at = row.index(block) if block in row else 0
+        pairs = list(pairwise(row[max(at - 1, 0) : at + 2]))
+        return bool(pairs) and all(_EMPTY_LINE.search(self.data, before.end, after.start) for before, after in pairs)
 
     def remove(self, block: Block) -> None:
         """Take a block out, with its lines where it has them for itself."""

@@ -35,8 +35,9 @@ def write_bodies(sheet: UsdSheet) -> None:
     note_body_shapes(sheet)
     placed: set[Any] = set()
     kinematic = grounds(sheet.mechanism)
+    home = sheet.authors_group("body") or sheet.root
     for key in _parents_first(sheet.mechanism) if sheet.is_nested else [key for key, _ in sheet.mechanism.vertices(Body)]:
-        spec = _place_nested(sheet, key) if sheet.is_nested else sheet.add_prim(key, sheet.root, "Xform")
+        spec = _place_nested(sheet, key) if sheet.is_nested else sheet.add_prim(key, home, "Xform")
         placed.add(spec.path)
         _write_body(sheet, spec, key)
         if key in kinematic:

@@ -7,6 +7,7 @@ each property once.
 from __future__ import annotations
 
 import re
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct, field
@@ -21,7 +22,7 @@ from hymeko_x.ir.parts import DofKind
 from hymeko_x.ir.values import IDENTITY
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from numpy.typing import NDArray
 
@@ -110,13 +111,15 @@ def set_schemas(spec: Any, schemas: list[str]) -> None:
 
 _INVALID = re.compile(r"\W")
 RESET = "!resetXformStack!"
+_GROUPED: Mapping[str, tuple[str, ...]] = MappingProxyType({"joints": ("joint", "loop")})
+"""The kinds of elements in a group, which may be in a prim of the author's."""
 
 
 class UsdSheet(Struct):
     """The open layer. ``paths`` are the paths of the prims of elements by id, ``dofs`` the prim and axis of each dof of a joint.
 
-    ``element_paths`` are the paths of prims that represent elements, ``group_paths`` of those that contain them. ``body_shapes``
-    is the shape of each body whose own prim is its geometry, ``body_scales`` the scale of such a prim.
+    ``element_paths`` are the paths of prims that represent elements, ``group_paths`` of those that contain them, ``groups``
+    by their names. ``body_shapes`` is the shape of each body whose own prim is its geometry, ``body_scales`` the scale of such a prim.
     ``is_nested``: whether each body is inside of its parent.
     """
 
@@ -128,6 +131,7 @@ class UsdSheet(Struct):
     dofs: dict[tuple[Id, int], tuple[Any, str]] = field(default_factory=dict)
     element_paths: set[Any] = field(default_factory=set)
     group_paths: set[Any] = field(default_factory=set)
+    groups: dict[str, Any] = field(default_factory=dict)
     prims: dict[Any, Prim] = field(default_factory=dict)
     body_shapes: dict[Id, Id] = field(default_factory=dict)
     body_scales: dict[Id, Vec3] = field(default_factory=dict)
@@ -201,12 +205,29 @@ class UsdSheet(Struct):
         return point if scale is None else (point[0] / scale[0], point[1] / scale[1], point[2] / scale[2])
 
     def scope(self, name: str) -> Any:
-        """The path of one of the writer's groups below the robot's prim."""
+        """The path of a group: the author's, where all of its elements are in one, else the writer's below the robot's prim."""
+        if name not in self.groups:
+            self.groups[name] = self.authors_group(*_GROUPED.get(name, ())) or self._own_group(name)
+        return self.groups[name]
+
+    def _own_group(self, name: str) -> Any:
         path = self.root.AppendChild(name)
         if path not in self.prims:
             self.define(path, "Scope")
             self.group_paths.add(path)
         return path
+
+    def authors_group(self, *kinds: str) -> Any | None:
+        """The prim below the robot's in which its author has all elements of these kinds; None where there is none but other elements."""
+        if not kinds or self.mechanism.notation(ROOT, words.ROOT_PRIM) is None:
+            return None
+        graph = self.mechanism.graph
+        noted = {key: self.mechanism.notation(key, words.PATH) or () for key in (*graph.vertices, *graph.edges)}
+        taken = {text for texts in noted.values() for text in texts}
+        above = {text.rpartition("/")[0] for key, texts in noted.items() if key.kind in kinds for text in texts}
+        group = above.pop() if len(above) == 1 else ""
+        is_below = group.startswith(f"{self.root}/") and Sdf.Path.IsValidPathString(group)
+        return Sdf.Path(group) if is_below and group not in taken else None
 
 
 def parsed_layer(text: str) -> Any | None:
