@@ -25,7 +25,7 @@ from hymeko_x.edits.differences import (
 )
 from hymeko_x.edits.guessing import Guess, best_guess
 from hymeko_x.edits.paths import with_same_paths
-from hymeko_x.edits.poses import with_edited_poses
+from hymeko_x.edits.poses import displaced, with_edited_poses
 from hymeko_x.edits.unnamed import (
     stem,
     unnamed_bodies,
@@ -211,6 +211,7 @@ class Conversion:
         assert self._first_image is not None
         edits = [str(edit) for edit in rest if is_telling(edit)]
         edits += edited_classes(self._read, self._first_image, self._first_original, self.format)
+        edits += displaced(self._read, self._first_image, self.format)
         return Left({*names.given, *names.given.values()}, words[False], words[True], edits, sum(not is_of_asset(edit) for edit in found))
 
     def unmet(self, known: Container[str], *, of_extras: bool) -> Iterator[tuple[Id, str]]:
@@ -287,11 +288,11 @@ class Conversion:
         return has_own and all(view is not None and view.id.name == view.child.name for view in views)
 
     def _is_called_anew(self, new: Id, old: Id) -> bool:
-        """Whether EDITED has a name for an element that has none by its own words, and that is not called after its body."""
+        """Whether EDITED was edited to have a name for an element that has none by its own words, and that is not called after its body."""
         joint = self.edited.joints.get(new)
-        return (
-            old.kind in ("body", "joint", "frame") and stem(new) != stem(old) and not (joint is not None and stem(joint.child) == stem(new))
-        )
+        is_after_body = joint is not None and stem(joint.child) == stem(new)
+        was_there = self._first_image is not None and new in self._first_image.graph
+        return old.kind in ("body", "joint", "frame") and stem(new) != stem(old) and not (is_after_body or was_there)
 
     def _distance(self, image: Mechanism) -> int:
         """In how much the edited file differs from an image, apart from names."""
@@ -311,8 +312,8 @@ class Conversion:
         return Names({new: old for new, old in pairs.items() if old.kind in NAMED and new not in made}, made)
 
     def _is_unnamed(self, new: Id, old: Id, image: Mechanism) -> bool:
-        """Whether an element has no name in any of the three files: a contact, one that says so, an actuator that the options ask for."""
-        if old.kind == "actuator" and self._homes.get(old, old) not in self.mechanism.graph:
+        """Whether an element has no name in any of the three files: a contact, one that says so, an actuator or a frame that is made."""
+        if old.kind in ("actuator", "frame") and self._homes.get(old, old) not in self.mechanism.graph:
             return True
         return old.kind == "contact" or not (_has_name(self.edited, new) or _has_name(image, old))
 

@@ -1,18 +1,41 @@
-"""Edits of named configurations that a format keeps as texts (keyframes), as edits of the poses that they were made of."""
+"""Edits of named configurations that a format keeps as texts (keyframes), and of where bodies stand beside what their joints say."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
 from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.kinematics import reference_poses
 from hymeko_x.ir.parts import Stance
+from hymeko_x.ir.values import numbers_text, rotation_angle
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
+    from hymeko_x.ir.values import Pose
+
+_NEAR = 1e-5
+"""How near in m and rad a place in single precision is to what it was."""
+
+
+def displaced(edited: Mechanism, image: Mechanism, format: Format) -> list[str]:
+    """The bodies that ``edited`` puts where neither their joints do nor ``image`` did, in words; both are of the format."""
+    if format.places is None or not (moved := formats.loaded(format.places)(edited)):
+        return []
+    before: dict[Id, Pose] = {**reference_poses(image), **formats.loaded(format.places)(image)}
+    return [
+        f"{key} stands at [{numbers_text(pose.xyz)}] with the quaternion [{numbers_text(pose.quat)}], where its joint does not put it"
+        for key, pose in moved.items()
+        if key in before and not _are_near(pose, before[key])
+    ]
+
+
+def _are_near(pose: Pose, other: Pose) -> bool:
+    return math.dist(pose.xyz, other.xyz) < _NEAR and rotation_angle(pose.quat, other.quat) < _NEAR
 
 
 def with_edited_poses(robot: Mechanism, image: Mechanism, edited: Mechanism, format: Format) -> Mechanism:

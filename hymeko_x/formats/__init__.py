@@ -18,6 +18,7 @@ from hymeko_x.formats.format import ZIP
 from hymeko_x.formats.format import Assets as Assets
 from hymeko_x.formats.format import Format as Format
 from hymeko_x.formats.format import loaded as loaded
+from hymeko_x.formats.roots import xml_root as xml_root
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -170,6 +171,7 @@ USD = Format(
     libraries=MappingProxyType({"pxr": "usd"}),
     memory=MappingProxyType({"pxr": "hymeko_x.verify.readers.usd.memory:load"}),
     stated_notations=MappingProxyType({"pose on the stage": "usd.pose"}),
+    places="hymeko_x.formats.usd.places:places",
     names_are_identifiers=True,
     idle_extras=(
         r'(?:over|def(?: Scope| Xform)?) "[^"\n]*"\s*(?:\(\s*(?:prepend apiSchemas = \["PhysicsArticulationRootAPI"\]\s*)?'
@@ -374,21 +376,6 @@ def root_hint(root: str) -> str:
     if format is None:
         return ""
     return f"it looks like {format.title}: " + (f"read it with --from {format.name}" if format.frontend else "that format cannot be read")
-
-
-_BEFORE_ROOT = re.compile(rb"\s+|<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>\[]*(?:\[.*?\]\s*)?>", re.DOTALL)
-_ROOT = re.compile(rb"<([A-Za-z_][\w.:-]*)")
-
-
-def xml_root(data: bytes) -> str | None:
-    """The name of the root element without its prefix, or None when the data does not begin like XML."""
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        data = data.decode("utf-16", "replace").encode()
-    position = 3 if data.startswith(b"\xef\xbb\xbf") else 0
-    while skipped := _BEFORE_ROOT.match(data, position):
-        position = skipped.end()
-    root = _ROOT.match(data, position)
-    return root[1].decode("utf-8", "replace").rpartition(":")[2] if root else None
 
 
 def _suffix_hint(option: str) -> str:

@@ -156,6 +156,8 @@ class Format(Struct, frozen=True):
     # ---- what the ledger and HyMeKo text ask
     stated_notations: Mapping[str, str] = field(default_factory=dict)
     """Notations that hold more than how a value was written, by the name of the field as which the ledger lists them."""
+    places: str | None = None
+    """The function ``mechanism -> poses by body`` of bodies that its files put elsewhere than their joints do, which overrule it."""
     inherited: str | None = None
     """The function ``text -> text`` that leaves out of an extra what the elements have in fields of their own (classes of MJCF)."""
     classes: str | None = None

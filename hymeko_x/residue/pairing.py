@@ -158,8 +158,8 @@ class _Pairs:
             ends = [names.get(arc.target, arc.target) for arc in edge.arcs]
             known = [end for end in ends if end.kind == "material" and end in self.source.vertices and end not in self.missing]
             return key.kind, edge.data, tuple(known or [_file_of(graph, arc.target) for arc in edge.arcs])
-        targets = [names.get(arc.target, arc.target) for arc in edge.arcs if arc.target.kind not in ("mesh", "material", "texture")]
-        return key.kind, tuple([target.kind if target.kind in _PLACED and target.name == key.name else target for target in targets])
+        targets = [arc.target for arc in edge.arcs if arc.target.kind not in ("mesh", "material", "texture")]
+        return key.kind, tuple([end.kind if end.kind in _PLACED and end.name == key.name else names.get(end, end) for end in targets])
 
 
 def _ends_by_place(edge: RobotEdge) -> dict[object, Id]:

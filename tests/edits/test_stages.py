@@ -82,10 +82,22 @@ TOOL = """<link name="tool">
 """
 
 
-def updated(folder: Path, name: str, old: str, new: str) -> tuple[list[str], list[str]]:
+PIN = """
+        def PhysicsSphericalJoint "pin"
+        {
+            rel physics:body0 = </arm/RigidBodies/base>
+            rel physics:body1 = </arm/RigidBodies/tip>
+            bool physics:excludeFromArticulation = 1
+            point3f physics:localPos0 = (0.1, 0.2, 0.3)
+            point3f physics:localPos1 = (0.1, 0.2, 0.3)
+        }
+"""
+
+
+def updated(folder: Path, name: str, old: str, new: str, stage: str = STAGE) -> tuple[list[str], list[str]]:
     """The lines that an edit of the converted stage takes out of the stage and puts in; there is nothing left to update."""
     original, there = folder / "arm.usda", folder / name
-    original.write_text(STAGE)
+    original.write_text(stage)
     hx.convert(original, there)
     text = there.read_text()
     assert text.count(old) == 1
@@ -118,3 +130,47 @@ def test_a_body_is_added_beside_the_others_and_its_joint_beside_theirs(tmp_path:
     assert new[:2] == ["", '        def Xform "tool" (']  # behind an empty line, as the body before it
     assert "            rel physics:body1 = </arm/RigidBodies/tool>" in new
     assert '        def PhysicsFixedJoint "tool_mount"' in new
+
+
+@pytest.mark.unread("HX101", "HX106", "HX114")
+def test_a_body_at_a_closure_gets_a_new_name(tmp_path: Path) -> None:
+    """MJCF has frames at the ends of the closure that are called after their bodies, and keep their names in the edited file."""
+    stage = STAGE.removesuffix("    }\n}\n") + PIN + "    }\n}\n"
+    change = updated(tmp_path, "arm.xml", 'body name="tip"', 'body name="hand"', stage)
+    assert 'site name="pin_tip"' in (tmp_path / "arm.xml").read_text()
+    assert change == ([], ['            displayName = "hand"'])
+
+
+ROD = """<mujoco model="rod">
+  <worldbody>
+    <body name="base">
+      <geom name="ball" size="0.1" mass="2"/>
+      <body name="rod" pos="0.3 0 0"><joint name="knee" axis="0 1 0"/><geom name="end" size="0.1" mass="1"/></body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"double3 xformOp:translate = (0.3, 0, 0)": "double3 xformOp:translate = (0.3, 0.5, 0)"}, ["[0.3 0.5 0]"]),
+        ({"physics:localPos0 = (0.3, 0, 0)": "physics:localPos0 = (0.4, 0, 0)"}, []),
+        ({"double3 xformOp:translate = (0.3": "double3 xformOp:translate = (0.4", "localPos0 = (0.3": "localPos0 = (0.4"}, []),
+    ],
+)
+def test_a_body_that_is_moved_off_its_joint_is_reported(changes: dict[str, str], told: list[str], tmp_path: Path) -> None:
+    """Only the frames of the joint count for where a body is, and they are the edit where both were moved, or they alone."""
+    original, there = tmp_path / "rod.xml", tmp_path / "rod.usda"
+    original.write_text(ROD)
+    hx.convert(original, there)
+    text = there.read_text()
+    for old, new in changes.items():
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    there.write_text(text)
+    report = hx.update(original, there).report
+    words = "the edit did not arrive: body 'rod' stands at {} with the quaternion [1 0 0 0], where its joint does not put it"
+    assert [row.message for row in report if row.code.id == "HX118"] == [words.format(place) for place in told]
+    assert original.read_text() == (ROD if told else ROD.replace("0.3 0 0", "0.4 0 0"))
