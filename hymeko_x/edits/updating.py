@@ -134,7 +134,7 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
 
 def _round(original: Source, format: Format, conversion: Conversion, edited: Source, report: Report) -> _Round:
     """The edits that a text does not have yet, carried over to it."""
-    before = pipeline.read(original, format, Report(), lenient=conversion.is_known)
+    before = pipeline.read(original, format, Report())
     after, beside = with_new_assets(before, conversion.edited_mechanism(before, original), edited)
     original = with_new_files(original, beside) if beside else original
     after = _without_unused(before, _with_imported_names(before, after, imported(original, format, before)))

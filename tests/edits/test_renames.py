@@ -83,3 +83,26 @@ def test_only_elements_that_name_a_joint_or_a_link_are_references() -> None:
     text = "<p><jointName> a </jointName><leftJoint>a</leftJoint><link>a</link><topic>a</topic><joints>a</joints></p>"
     after = with_new_references(text, {"a": "b"}, {"a": "c"})
     assert after == "<p><jointName> b </jointName><leftJoint>b</leftJoint><link>c</link><topic>a</topic><joints>a</joints></p>"
+
+
+SCOPED = """<sdf version="1.6">
+  <model name="m">
+    <static>1</static>
+    <link name="ball::skin"/>
+  </model>
+</sdf>
+"""
+
+
+@pytest.mark.unread("HX022", "HX040", "HX045")
+def test_an_original_that_could_not_be_read_with_an_edit_stays_as_it_is(tmp_path: Path) -> None:
+    """A static model has no joint that could have a name, and its link none that SDF could refer to."""
+    original, there = tmp_path / "m.sdf", tmp_path / "m.urdf"
+    original.write_text(SCOPED)
+    hx.convert(original, there)
+    text = there.read_text()
+    assert text.count('joint name="ball::skin_static"') == 1
+    there.write_text(text.replace('joint name="ball::skin_static"', 'joint name="hold"'))
+    with pytest.raises(hx.Refusal, match="with the edits the original cannot be used"):
+        hx.update(original, there)
+    assert original.read_text() == SCOPED
