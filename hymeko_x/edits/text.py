@@ -176,7 +176,8 @@ class _Attempt:
             self.before, self.after = (outline(Source(source.name, text, source.files), Report()) for text in texts)
         self.imported = imported(source, format, before)
         image, self.goal = (pipeline.reader(printing)(print, Report()).mechanism for print in sources)
-        self.unprinted = {(difference.element, difference.field) for difference in diff(before, image, TOLERANCE)}
+        names = {old: new for new, old in other_names(after, before).items()}
+        self.unprinted = {(names.get(edit.element, edit.element), edit.field) for edit in diff(before, image, TOLERANCE)}
 
     def files(self, replaced: Mapping[Block, Id]) -> dict[str, bytes]:
         """The files that change."""

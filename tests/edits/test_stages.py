@@ -174,3 +174,13 @@ def test_a_body_that_is_moved_off_its_joint_is_reported(changes: dict[str, str],
     words = "the edit did not arrive: body 'rod' stands at {} with the quaternion [1 0 0 0], where its joint does not put it"
     assert [row.message for row in report if row.code.id == "HX118"] == [words.format(place) for place in told]
     assert original.read_text() == (ROD if told else ROD.replace("0.3 0 0", "0.4 0 0"))
+
+
+@pytest.mark.unread("HX101", "HX106", "HX114")
+def test_a_body_whose_mass_follows_from_its_shape_gets_a_new_name(tmp_path: Path) -> None:
+    """Its mass is not in the text, and is another number in single precision, in which a print has it."""
+    mass = "            float physics:mass = 1\n            float3 physics:diagonalInertia = (0.1, 0.1, 0.1)\n"
+    bob = '            def Sphere "bob" (\n                prepend apiSchemas = ["PhysicsCollisionAPI"]\n            )\n'
+    stage = STAGE.replace(mass, f"{bob}            {{\n                double radius = 0.1\n            }}\n")
+    assert 'def Sphere "bob"' in stage
+    assert updated(tmp_path, "arm.xml", 'body name="tip"', 'body name="hand"', stage) == ([], ['            displayName = "hand"'])
