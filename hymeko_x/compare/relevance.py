@@ -279,9 +279,9 @@ def _move_alike(a: RobotEdge, b: RobotEdge, tolerance: Tolerance) -> bool:
     if [dof.kind for dof in first.dofs] != [dof.kind for dof in second.dofs]:
         return False
     if not any(dof.kind in _TURNING_FREELY for dof in first.dofs):
-        return all(_same(_moved(a, first.dofs, by), _moved(b, second.dofs, by), tolerance) for by in _SAMPLES)
+        return all(same_pose(_moved(a, first.dofs, by), _moved(b, second.dofs, by), tolerance) for by in _SAMPLES)
     (above, below), (other_above, other_below) = (tuple(pose_weight(arc) for arc in edge.arcs) for edge in (a, b))
-    return _same(compose(above, inverse(below)), compose(other_above, inverse(other_below)), tolerance) and all(
+    return same_pose(compose(above, inverse(below)), compose(other_above, inverse(other_below)), tolerance) and all(
         _move_alike_dofs(dof, below, other, other_below, tolerance) for dof, other in zip(first.dofs, second.dofs, strict=True)
     )
 
@@ -294,7 +294,8 @@ def _moved(joint: RobotEdge, dofs: Sequence[Dof], by: float) -> Pose:
     return compose(above, inverse(below))
 
 
-def _same(a: Pose, b: Pose, tolerance: Tolerance) -> bool:
+def same_pose(a: Pose, b: Pose, tolerance: Tolerance) -> bool:
+    """Whether two poses are one, up to the tolerance in m and rad."""
     return _near(a.xyz, b.xyz, tolerance) and rotation_angle(a.quat, b.quat) <= tolerance.absolute + tolerance.relative
 
 

@@ -40,8 +40,8 @@ from hymeko_x.edits.weights import (
     heavier,
     sprung_joints,
     with_computed_gains,
+    with_computed_springs,
     with_least_masses,
-    with_springs_of,
     without_followed,
 )
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
@@ -164,15 +164,10 @@ class Conversion:
         assert self._first_image is not None
         sources = {key: self.mechanism.graph.vertices.get(self._homes.get(key, key)) for key, _ in edited.vertices(Actuator)}
         edited, actuators = with_computed_gains(with_least_masses(edited, image), self._first_image, image, sources)
-        old = dict.fromkeys(actuators, "the gains")
         joints = sprung_joints(image, self.mechanism, self._homes, self._engine)
-        sprung = with_springs_of(image, edited, joints) if joints else edited
-        others = {edit.element for edit in diff(sprung, edited, _SINGLE)} if joints else set()
-        since = diff(with_springs_of(self._first_image, edited, joints), edited, _SINGLE) if others else ()
-        edits = [edit for edit in since if edit.element in others]
-        springs = others.difference(edit.element for edit in edits)
-        old |= dict.fromkeys(sorted(springs, key=str), "stiffness and damping")
-        return sprung, Computed({self._homes.get(key, key): words for key, words in old.items()}, tuple(map(str, edits)))
+        edited, springs, edits = with_computed_springs(edited, self._first_image, image, joints, _SINGLE)
+        old = {**dict.fromkeys(actuators, "the gains"), **dict.fromkeys(springs, "stiffness and damping")}
+        return edited, Computed({self._homes.get(key, key): words for key, words in old.items()}, tuple(map(str, edits)))
 
     def _engine(self) -> Mechanism:
         """ORIGINAL with what its engine computes of it."""

@@ -1,15 +1,16 @@
-"""Edits of named configurations that a format keeps as texts (keyframes), and of where bodies stand beside what their joints say."""
+"""Edits of named configurations that a format keeps as texts (keyframes), and of poses of bodies that their joints overrule."""
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
+from hymeko_x.compare.diff import Tolerance
+from hymeko_x.compare.relevance import same_pose
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.kinematics import reference_poses
 from hymeko_x.ir.parts import Stance
-from hymeko_x.ir.values import numbers_text, rotation_angle
+from hymeko_x.ir.values import numbers_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.values import Pose
 
-_NEAR = 1e-5
-"""How near in m and rad a place in single precision is to what it was."""
+_NEAR = Tolerance(5e-6, 0.0)
+"""How near in m and rad a pose in single precision is to what it was."""
 
 
 def displaced(edited: Mechanism, image: Mechanism, format: Format) -> list[str]:
@@ -30,12 +31,8 @@ def displaced(edited: Mechanism, image: Mechanism, format: Format) -> list[str]:
     return [
         f"{key} stands at [{numbers_text(pose.xyz)}] with the quaternion [{numbers_text(pose.quat)}], where its joint does not put it"
         for key, pose in moved.items()
-        if key in before and not _are_near(pose, before[key])
+        if key in before and not same_pose(pose, before[key], _NEAR)
     ]
-
-
-def _are_near(pose: Pose, other: Pose) -> bool:
-    return math.dist(pose.xyz, other.xyz) < _NEAR and rotation_angle(pose.quat, other.quat) < _NEAR
 
 
 def with_edited_poses(robot: Mechanism, image: Mechanism, edited: Mechanism, format: Format) -> Mechanism:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.parts import Actuator, Body, Inertial, Joint, Role
 from hymeko_x.ir.solids import joined
@@ -17,6 +18,7 @@ from hymeko_x.rewrite.inertia import LEAST, LEAST_TENSOR
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Mapping
 
+    from hymeko_x.compare.diff import Difference, Tolerance
     from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotEdge
     from hymeko_x.ir.solids import Solid
 
@@ -72,7 +74,21 @@ def sprung_joints(image: Mechanism, original: Mechanism, homes: Mapping[Id, Id],
     return {key for key, home in others.items() if _springs(computed[home]) != _springs(original.joints[home])}
 
 
-def with_springs_of(robot: Mechanism, edited: Mechanism, joints: Container[Id]) -> Mechanism:
+def with_computed_springs(
+    edited: Mechanism, first: Mechanism, now: Mechanism, joints: Container[Id], tolerance: Tolerance
+) -> tuple[Mechanism, list[Id], list[Difference]]:
+    """The edited robot, in which these joints have their springs as ORIGINAL is converted to ``now``; which of them had those of ``first``.
+
+    ``first`` is ORIGINAL as it was converted before the edits. The third are the edits of the springs of the others.
+    """
+    sprung = _with_springs_of(now, edited, joints)
+    others = {edit.element for edit in diff(sprung, edited, tolerance)} if sprung is not edited else set()
+    since = diff(_with_springs_of(first, edited, joints), edited, tolerance) if others else ()
+    edits = [edit for edit in since if edit.element in others]
+    return sprung, sorted(others.difference(edit.element for edit in edits), key=str), edits
+
+
+def _with_springs_of(robot: Mechanism, edited: Mechanism, joints: Container[Id]) -> Mechanism:
     """The edited robot, in which these joints have the stiffness and damping that they have in the other one."""
     edges: dict[Id, RobotEdge] = {}
     for view in edited.joints.values():
@@ -80,7 +96,7 @@ def with_springs_of(robot: Mechanism, edited: Mechanism, joints: Container[Id]) 
         if view.id in joints and other is not None and len(other.joint.dofs) == len(view.joint.dofs):
             dofs = [replace(dof, stiffness=k, damping=d) for dof, (k, d) in zip(view.joint.dofs, _springs(other), strict=True)]
             edges[view.id] = replace(edited.graph.edges[view.id], data=Joint(tuple(dofs)))
-    return edited.replace(edges=edges)
+    return edited.replace(edges=edges) if edges else edited
 
 
 def _springs(view: JointView) -> list[tuple[float, float]]:

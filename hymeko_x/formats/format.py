@@ -56,7 +56,7 @@ class Format(Struct, frozen=True):
     container_of: str = ""
     """The name of the format of which it is another container, with the same content and the same extras (usdc, usdz; json)."""
     fast_container: str = ""
-    """The name of the container of it that is written and read fastest, for conversions whose text nobody reads (usdc); empty: itself."""
+    """The name of its container that is written and read fastest, for conversions that are only compared (usdc); empty: itself."""
     expands_to: str = ""
     """The name of the format that its files expand to (xacro)."""
     vocabulary: str | None = None
