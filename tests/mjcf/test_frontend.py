@@ -168,8 +168,7 @@ def test_the_anchor_of_a_connect_is_the_same_point_seen_from_both_bodies() -> No
         (in_world("<bodi/>"), "robot.xml:1: error[HX027]: <worldbody> has no <bodi>"),
         (
             in_world('<body><joint limited="true"/></body>'),
-            "robot.xml:1: error[HX020]: <joint range> is missing or inherited, "
-            "expected a lower and a greater number, since limited is true",
+            "robot.xml:1: error[HX020]: <joint range> is missing, expected a lower and a greater number, since limited is true",
         ),
         (
             in_world('<body name="b"/><body name="b"/>'),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct, field
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files
 
 Values = dict[str, Any]
+
+_NO_ATTRIBUTES: Mapping[str, str] = MappingProxyType({})
 
 
 class MjcfBuilder(Builder):
@@ -126,7 +129,7 @@ class MjcfBuilder(Builder):
                     for name in touched:
                         self.note(key, attribute(name, prefix), own[name])
         except BadAttribute as error:
-            raise self.bad(element, error) from error
+            raise self.bad(element, error, merged) from error
         for name in taken:
             own.pop(name, None)
         return found
@@ -146,10 +149,10 @@ class MjcfBuilder(Builder):
             return True
         return bool(group.seen(again, self.settings) == group.seen(merged, self.settings))
 
-    def bad(self, element: Element, error: BadAttribute) -> Refusal:
-        """The refusal of an attribute that MuJoCo refuses."""
-        text = element.attributes.get(error.attribute)
-        found = f"is '{text}'" if text is not None else "is missing or inherited"
+    def bad(self, element: Element, error: BadAttribute, merged: Mapping[str, str] = _NO_ATTRIBUTES) -> Refusal:
+        """The refusal of an attribute that MuJoCo refuses; ``merged`` are the attributes with those that the class gives."""
+        own, text = element.attributes.get(error.attribute), merged.get(error.attribute)
+        found = f"is '{own}'" if own is not None else "is missing" if text is None else f"is '{text}' in its class"
         return refuse(codes.BAD_NUMBER, f"<{element.tag} {error.attribute}> {found}, expected {error.expected}", element.origin)
 
     # ---- side tables -----------------------------------------------------------------------------------------------------

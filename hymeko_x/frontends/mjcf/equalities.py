@@ -118,14 +118,14 @@ def _body_arcs(element: Element, key: Id, builder: MjcfBuilder, placed: dict[Id,
     second = find_end(element, "body", "body2", builder) if "body2" in element.attributes else WORLD
     if first == second:
         raise refuse(codes.REPEATED, f"<{element.tag}> joins '{first.name}' to itself", element.origin)
-    given = {name: text for name in ("anchor", "relpose") if (text := element.take(name)) is not None}
-    for name, text in given.items():
-        builder.note(key, attribute(name), text)
     try:
-        anchor = numbers_of(given, "anchor", 3, 3) or (0.0, 0.0, 0.0)
-        relative = numbers_of(given, "relpose", 7, 7)
+        anchor = numbers_of(element.attributes, "anchor", 3, 3) or (0.0, 0.0, 0.0)
+        relative = numbers_of(element.attributes, "relpose", 7, 7)
     except BadAttribute as error:
         raise builder.bad(element, error) from error
+    for name in ("anchor", "relpose"):
+        if (text := element.take(name)) is not None:
+            builder.note(key, attribute(name), text)
     at = Pose((anchor[0], anchor[1], anchor[2]))
     between = compose(inverse(_in_world(first, builder, placed)), _in_world(second, builder, placed))
     if element.tag == "connect":
