@@ -10,6 +10,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf.notations import LAYERS
 from hymeko_x.formats.mjcf.places import MATERIAL, MESH
 from hymeko_x.formats.mjcf.words import joined
+from hymeko_x.frontends.mjcf.expand import folder_from
 from hymeko_x.ir.mechanism import Id, layer_edge
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Material, Mesh, Texture
@@ -38,10 +39,10 @@ def read_assets(sections: list[Element], builder: MjcfBuilder) -> None:
 def _uri(element: Element, file: str, folder: str, builder: MjcfBuilder) -> str:
     """The path of a file from the main file: in the folder of <compiler>, else beside the main file, else beside the included one."""
     uri = joined(folder, file, builder.settings)
-    beside = posixpath.join(posixpath.dirname(element.file), uri)
-    if folder or element.file == builder.file or builder.files.find(uri) is not None or builder.files.find(beside) is None:
+    if folder or element.file == builder.file or builder.files.find(uri) is not None:
         return uri
-    return beside
+    beside = posixpath.join(folder_from(builder.file, element.file), uri)
+    return uri if builder.files.find(beside) is None else beside
 
 
 def read_mesh(element: Element, builder: MjcfBuilder) -> None:

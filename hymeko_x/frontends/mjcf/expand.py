@@ -79,13 +79,22 @@ def included_source(include: Element, source: Source) -> tuple[str, Source]:
     if include.children:
         raise refuse(codes.UNKNOWN_WORD, "<include> has no children", include.origin)
     uri = uri.replace("\\", "/")
-    path = source.files.find(uri) or source.files.find(posixpath.join(posixpath.dirname(include.file), uri))
+    beside = posixpath.join(folder_from(source.name, include.file), uri)
+    place = next((place for place in (uri, beside) if source.files.find(place) is not None), uri)
+    path = source.files.find(place)
     if path is None:
         raise refuse(codes.CANNOT_READ, f"the included file '{uri}' was not found", include.origin)
+    name = os.path.normpath(os.path.join(os.path.dirname(source.name), place))
     try:
-        return path, replace(source, name=uri, data=source.files.read(path))
+        return path, replace(source, name=name, data=source.files.read(path))
     except OSError as error:
         raise refuse(codes.CANNOT_READ, f"the included file '{uri}' cannot be read: {error.strerror}", include.origin) from error
+
+
+def folder_from(main: str, file: str) -> str:
+    """The folder of an included file as seen from that of the main one; empty for the same folder."""
+    folder = os.path.relpath(os.path.dirname(file) or ".", os.path.dirname(main) or ".").replace(os.sep, "/")
+    return "" if folder == "." else folder
 
 
 # ---- expansion by MuJoCo -------------------------------------------------------------------------------------------------------
