@@ -133,6 +133,8 @@ class Conversion:
         Raises: Refusal when ORIGINAL cannot be written in the format.
         """
         self.mechanism, self.source = mechanism, source
+        if not self.is_known and self.home.in_models is not None:
+            self.edited = self._read = rename(self._read, formats.loaded(self.home.in_models)(self._read, mechanism))
         notes = Report() if self.is_known else self.notes
         guess = self._again(self._used) if self._used is not None else self._first()
         self._used = guess

@@ -224,6 +224,7 @@ SDF = Format(
     fragment_mounts="hymeko_x.formats.sdf.mounted:mounted_in",
     fragment_of="hymeko_x.formats.sdf.mounted:fragment_of",
     completes="hymeko_x.frontends.sdf.static:complete",
+    in_models="hymeko_x.backends.sdf.scopes:in_models",
     outline="hymeko_x.xml.outline:outline",
     references="hymeko_x.formats.sdf.references:renamed",
     keeps_package_uris=True,

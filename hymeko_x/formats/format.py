@@ -158,6 +158,8 @@ class Format(Struct, frozen=True):
     """Notations that hold more than how a value was written, by the name of the field as which the ledger lists them."""
     places: str | None = None
     """The function ``mechanism -> poses by body`` of bodies that its files put elsewhere than their joints do, which overrule it."""
+    in_models: str | None = None
+    """The function ``(mechanism, original) -> {id: new id}``: the names of elements that have to be in one of a file's models (SDF)."""
     inherited: str | None = None
     """The function ``text -> text`` that leaves out of an extra what the elements have in fields of their own (classes of MJCF)."""
     classes: str | None = None

@@ -89,15 +89,16 @@ def moved(have: Sequence[Id], runs: Sequence[Run]) -> list[Id]:
 
 
 def laid_out(have: Sequence[Id], want: Sequence[Id], known: set[Id]) -> tuple[Id, ...]:
-    """The wanted layout of the elements that are there; what is not known stays behind the element that it stood behind."""
+    """The wanted layout of the elements that are there; what is not known stays behind the element, and the body, that it stood behind."""
     behind: dict[Id | None, list[Id]] = defaultdict(list)
-    wanted = set(want)
+    places: dict[Id | None, int] = {key: place for place, key in enumerate(want)}
     last: Id | None = None
+    body: Id | None = None
     for key in have:
-        if key in wanted:
-            last = key
+        if key in places:
+            last, body = key, key if key.kind == "body" else body
         elif key not in known:
-            behind[last].append(key)
+            behind[max(last, body, key=lambda one: places.get(one, -1))].append(key)
     result = list(behind[None])
     for key in want:
         result += [key, *behind.get(key, [])]

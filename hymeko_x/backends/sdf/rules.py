@@ -13,6 +13,7 @@ from hymeko_x import codes
 from hymeko_x.backends.sdf.gazebo import obey_gazebo_fragments
 from hymeko_x.backends.sdf.loops import close_loops_by_joints
 from hymeko_x.backends.sdf.names import make_names_unique_in_models, make_names_unique_on_links
+from hymeko_x.backends.sdf.scopes import put_bodies_into_models
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.sensors import IMAGE, LEAST_FOV
@@ -210,6 +211,7 @@ RULES: tuple[Rule, ...] = (
     unless_from_sdf(obey_gazebo_fragments),
     part_meshes_by_looks,
     unless_from_sdf(make_sizes_positive),
+    put_bodies_into_models,
     make_names_unique_in_models,
     make_names_unique_on_links,
     drop_unused_assets,
