@@ -124,6 +124,14 @@ def test_a_shape_is_added_to_a_body_whose_shapes_are_in_a_scope(tmp_path: Path) 
 
 
 @pytest.mark.unread("HX101", "HX105", "HX114")
+def test_a_joint_is_added_beside_the_others_where_these_are_among_the_bodies(tmp_path: Path) -> None:
+    flat = STAGE.replace('    def Scope "Joints"\n    {\n', "").removesuffix("    }\n}\n") + "}\n"
+    gone, new = updated(tmp_path, "arm.urdf", "</robot>", f"{TOOL}</robot>", flat)
+    assert gone == []
+    assert [line.strip() for line in new if "def " in line] == ['def Xform "tool" (', 'def PhysicsFixedJoint "tool_mount"']
+
+
+@pytest.mark.unread("HX101", "HX105", "HX114")
 def test_a_body_is_added_beside_the_others_and_its_joint_beside_theirs(tmp_path: Path) -> None:
     gone, new = updated(tmp_path, "arm.urdf", "</robot>", f"{TOOL}</robot>")
     assert gone == []

@@ -218,7 +218,7 @@ class UsdSheet(Struct):
         return path
 
     def authors_group(self, *kinds: str) -> Any | None:
-        """The prim below the robot's in which its author has all elements of these kinds; None where there is none but other elements."""
+        """The robot's prim, or one below, in which its author has all elements of these kinds; None where there is none but elements."""
         if not kinds or self.mechanism.notation(ROOT, words.ROOT_PRIM) is None:
             return None
         graph = self.mechanism.graph
@@ -226,8 +226,8 @@ class UsdSheet(Struct):
         taken = {text for texts in noted.values() for text in texts}
         above = {text.rpartition("/")[0] for key, texts in noted.items() if key.kind in kinds for text in texts}
         group = above.pop() if len(above) == 1 else ""
-        is_below = group.startswith(f"{self.root}/") and Sdf.Path.IsValidPathString(group)
-        return Sdf.Path(group) if is_below and group not in taken else None
+        is_inside = f"{group}/".startswith(f"{self.root}/") and Sdf.Path.IsValidPathString(group)
+        return Sdf.Path(group) if is_inside and group not in taken else None
 
 
 def parsed_layer(text: str) -> Any | None:
