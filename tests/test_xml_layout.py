@@ -42,9 +42,10 @@ def content(text: str) -> list[tuple[str, object, str]]:
 
 @given(elements(), st.integers(0, 3))
 def test_the_content_stays_and_a_second_time_changes_nothing(text: str, depth: int) -> None:
-    found = laid_out(text, depth)
-    assert content(found) == content(text)
-    assert laid_out(found, depth) == found
+    for spread in (False, True):
+        found = laid_out(text, depth, spread=spread)
+        assert content(found) == content(text)
+        assert laid_out(found, depth) == found
 
 
 @given(elements(), st.integers(0, 3), st.integers(0, 3))
@@ -66,3 +67,8 @@ def test_the_depth_at_which_a_text_stood_does_not_matter(text: str, before: int,
 )
 def test_each_node_has_a_line_of_its_own_where_there_are_lines(text: str, wanted: str) -> None:
     assert laid_out(text, 1) == wanted
+
+
+def test_a_text_on_one_line_is_spread_where_that_is_asked_for() -> None:
+    assert laid_out("<a><b/><c>1 2</c></a>", 1) == "<a><b/><c>1 2</c></a>"
+    assert laid_out("<a><b/><c>1 2</c></a>", 1, spread=True) == "<a>\n    <b/>\n    <c>1 2</c>\n  </a>"

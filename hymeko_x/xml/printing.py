@@ -8,6 +8,7 @@ from xml.parsers import expat
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal, refuse
+from hymeko_x.xml.layout import at_depth, laid_out
 from hymeko_x.xml.namespaces import without_declared
 from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.text import NAME, attributes_text, comment_markup, escaped
@@ -118,7 +119,7 @@ def _place_for(extra: Extra, tag: Tag) -> int:
 
 
 def render(tag: Tag, depth: int = 0) -> list[str]:
-    """The lines of a tag, two blanks per level. Foreign text keeps its own inner indentation; an empty text is an empty line."""
+    """The lines of a tag, two blanks per level. Foreign text that is not tidy keeps its inner lines; an empty text is an empty line."""
     lines: list[str] = []
     around: list[tuple[Iterator[Tag | str], str]] = []
     row: Iterator[Tag | str] = iter((tag,))
@@ -126,7 +127,8 @@ def render(tag: Tag, depth: int = 0) -> list[str]:
     while True:
         for child in row:
             if isinstance(child, str):
-                lines.append(indent + child if child else "")
+                text = at_depth(child, min(depth + len(around), 40)) if "\n" in child else child
+                lines.append(indent + text if text else "")
                 continue
             name, children = child.name, child.children
             start = f"{indent}<{name}{attributes_text(child.attributes)}" if child.attributes else f"{indent}<{name}"
@@ -150,6 +152,11 @@ def render(tag: Tag, depth: int = 0) -> list[str]:
 def ready(tag: Tag, depth: int) -> str:
     """A tag as ready text for another tag at this depth: its lines, of which the first one is not indented."""
     return "\n".join(render(tag, depth))[2 * depth :]
+
+
+def in_lines(markup: str) -> str:
+    """The text of an element as readers keep one of several lines that stands in another one: one element a line."""
+    return laid_out(markup, 2, spread=True)
 
 
 def markup(node: Node) -> str:

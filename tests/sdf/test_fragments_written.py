@@ -105,3 +105,14 @@ def test_prefixes_that_the_root_of_sdf_declares_are_declared_in_fragments(target
     (fragment,) = re.findall(r"<gazebo.*?</gazebo>", (tmp_path / target).read_text("utf-8"), re.DOTALL)
     assert fragment.startswith('<gazebo xmlns:my="urn:my" reference="a">')
     assert '<sensor name="eye" type="camera" my:test="1">' in fragment
+
+
+def test_what_is_in_a_fragment_has_a_line_for_each_element_at_its_depth() -> None:
+    urdf = hx.dumps(hx.loads(EVERYTHING, "sdf"), "urdf")
+    assert '  <gazebo>\n    <plugin name="p" filename="libp.so">\n      <gain>2</gain>\n    </plugin>\n  </gazebo>\n' in urdf
+    sdf = hx.dumps(hx.loads(urdf, "urdf"), "sdf")
+    assert '    <plugin name="p" filename="libp.so">\n      <gain>2</gain>\n    </plugin>\n' in sdf
+    imu = '<sensor name="imu" type="imu">\n        <update_rate>100</update_rate>\n      </sensor>\n'
+    assert f"      {imu}" in sdf
+    foreign = '<foo:bar xmlns:foo="urn:foo">\n        <a>1</a>\n      </foo:bar>'
+    assert f"      {foreign}\n" in hx.dumps(hx.loads(model(f'<link name="a">{INERTIAL}{foreign}</link>'), "sdf"), "sdf")

@@ -15,7 +15,7 @@ from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Body, Light, Loop, Role
 from hymeko_x.xml.namespaces import PREFIX, with_declared
 from hymeko_x.xml.parse import parse_text
-from hymeko_x.xml.printing import Tag, markup, put_back, ready
+from hymeko_x.xml.printing import Tag, in_lines, markup, put_back, ready
 from hymeko_x.xml.text import escaped
 from hymeko_x.xml.tree import Node
 
@@ -54,7 +54,7 @@ def _of_link(body: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
     for node in _content(body, sheet):
         if node.tag == "inertial":  # URDF has the numbers
             continue
-        yield _leaf(back[node.tag], _text(node)) if node.tag in back else markup(node)
+        yield _leaf(back[node.tag], _text(node)) if node.tag in back else in_lines(markup(node))
     shapes = sheet.mechanism.shapes.get(body, ())
     collisions = [_whole(view.id, sheet) for view in shapes if view.shape.role is Role.COLLISION]
     frictions = {view.shape.friction[:1] for view in shapes if view.shape.role is Role.COLLISION}
@@ -121,7 +121,7 @@ def _of_model(sheet: SdfSheet) -> Iterator[Tag | str]:
     """What the model has besides links and joints, and the closures of its loops."""
     for extra in sheet.extras(ROOT):
         if extra.path in _MODEL_PATHS and extra.text.startswith("<"):
-            yield from (markup(node) for node in _nodes(extra.text) if node.tag in words.OF_MODEL)
+            yield from (in_lines(markup(node)) for node in _nodes(extra.text) if node.tag in words.OF_MODEL)
     if sheet.is_static(""):
         yield _leaf("static", "true")
     for key, _, arcs in sheet.mechanism.edges(Loop):

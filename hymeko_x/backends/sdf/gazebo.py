@@ -21,7 +21,7 @@ from hymeko_x.ir.mechanism import ROOT, Extra, Id
 from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import Joint, Role
 from hymeko_x.xml.parse import parse_text
-from hymeko_x.xml.printing import markup
+from hymeko_x.xml.printing import in_lines, markup
 from hymeko_x.xml.text import escaped, unescaped
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def extras_of(node: Node, mechanism: Mechanism, fields: Fields) -> Iterator[tupl
             continue
         if not reference:
             if (child.tag in fragments.OF_MODEL or ":" in child.tag) and not _is_taken(child, mechanism):
-                yield ROOT, _at_end("model", markup(child))
+                yield ROOT, _at_end("model", in_lines(markup(child)))
         elif body in mechanism.graph.vertices:
             yield from _of_link(child, body, mechanism, fields)
         elif joint in mechanism.graph.edges:
@@ -131,7 +131,7 @@ def _of_joint(child: Node, key: Id, mechanism: Mechanism, fields: Fields) -> Ite
     if child.tag in fragments.OF_JOINT:
         yield from _values(child, *fragments.OF_JOINT[child.tag], [key])
     elif child.tag == "sensor":
-        yield key, _at_end("", markup(child))
+        yield key, _at_end("", in_lines(markup(child)))
     elif child.tag in fragments.OF_DOF and (value := _number(child)) is not None:
         name, joint = fragments.OF_DOF[child.tag], mechanism.graph.edges[key].data
         if isinstance(joint, Joint) and len(joint.dofs) == 1 and (value >= 0.0 or name != "stiffness"):
@@ -148,7 +148,7 @@ def _of_link(child: Node, body: Id, mechanism: Mechanism, fields: Fields) -> Ite
     elif child.tag == fragments.DAMPING and _number(child) is not None:
         yield body, _at_end("", "<velocity_decay><linear>{0}</linear><angular>{0}</angular></velocity_decay>".format(_text(child)))
     elif child.tag in fragments.IN_LINK:
-        yield body, _at_end("", _IMU_NOISE.sub(_noise_by_axis, markup(child)))
+        yield body, _at_end("", in_lines(_IMU_NOISE.sub(_noise_by_axis, markup(child))))
     elif child.tag in fragments.OF_COLLISION:
         yield from _values(child, *fragments.OF_COLLISION[child.tag], collisions)
     elif child.tag == "material" and _text(child):
@@ -171,7 +171,7 @@ def _of_shapes(child: Node, keys: list[Id], fields: Fields) -> Iterator[tuple[Id
         elif inner := [(place, inner) for inner in node.children if inner.is_element and not node.attributes]:
             rest += inner
         elif place != "material/ambient":
-            yield from ((key, _at_end(path, markup(node))) for key in keys)
+            yield from ((key, _at_end(path, in_lines(markup(node)))) for key in keys)
 
 
 def _set(field: Field, node: Node, keys: list[Id], fields: Fields) -> None:
