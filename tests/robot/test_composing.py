@@ -186,6 +186,20 @@ def test_sensors_of_a_hand_in_mjcf_come_along_on_an_arm_in_another_format() -> N
     assert model.site(model.sensor("h/f").objid[0]).name == "h/tip"
 
 
+def test_a_hand_in_mjcf_keeps_its_contacts_on_an_arm_in_another_format() -> None:
+    pads = hx.loads(
+        """<mujoco><default><default class="pad"><geom condim="4" solref=".002 1" conaffinity="5"/></default></default><worldbody>
+        <body name="palm"><joint name="close" solreflimit=".005 1"/><geom name="pad" class="pad" type="box" size=".1 .1 .1" contype="6"/>
+        <site name="tip" group="3"/></body></worldbody></mujoco>""",
+        "mjcf",
+    )
+    model = claw().attach(pads, at="finger", prefix="h/").to_mujoco()
+    pad = model.geom("h/pad")
+    assert (pad.contype, pad.conaffinity, pad.condim, pad.solref[0]) == (6, 5, 4, 0.002)
+    assert model.jnt_solref[model.joint("h/close").id][0] == 0.005
+    assert model.site("h/tip").group == 3
+
+
 def test_what_floats_in_its_own_world_floats_in_a_scene() -> None:
     drone = """<mujoco model="drone"><worldbody><body name="hull" pos="0 0 1"><freejoint name="fly"/><geom size=".1"/></body></worldbody>
       <keyframe><key name="up" qpos="1 0 2 1 0 0 0"/></keyframe></mujoco>"""

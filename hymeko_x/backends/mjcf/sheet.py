@@ -18,7 +18,7 @@ from hymeko_x.formats.mjcf.classes import Classes, merge
 from hymeko_x.formats.mjcf.codec import POSE, BadAttribute, InheritedValues, Settings, parameter_text, parameter_value, undone
 from hymeko_x.formats.mjcf.notations import frame
 from hymeko_x.formats.mjcf.places import same_value
-from hymeko_x.formats.mjcf.schema import attributes_of
+from hymeko_x.formats.mjcf.schema import attributes_of, kinds_of
 from hymeko_x.formats.mjcf.tree import COMMENT, parse_text
 from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import ROOT
@@ -45,6 +45,8 @@ Attributes = dict[str, str | None]
 _EMPTY: Mapping[str, str] = {}
 _SIGNED_ZERO = re.compile(r"(?<!\S)-0(?!\S)")
 _REFERENCES = frozenset(("mesh", "material", "texture"))
+_PLAIN: Mapping[str, str] = {"shape": "body/geom", "joint": "body/joint", "frame": "body/site", "coupling": "equality/joint"}
+"""The places in the schema of elements of which a number or a word of MJCF stands for itself, by the kinds of elements."""
 
 
 class MjcfSheet(Struct):
@@ -112,8 +114,15 @@ class MjcfSheet(Struct):
         return self.mechanism.notations.get(key, _EMPTY) if self.from_mjcf else _EMPTY
 
     def extras(self, key: Id) -> tuple[Extra, ...]:
-        """The extras of an element that are written. Only meshes and textures get some that another format's file did not have."""
-        return self.mechanism.extras.get(key, ()) if self.from_mjcf or key.kind in ("mesh", "texture") else ()
+        """The extras of an element that are written: all of a robot from MJCF, and of meshes and textures.
+
+        Of others, as of a hand from MJCF on an arm from URDF, only numbers and words of MJCF, which mean the same without their file.
+        """
+        found = self.mechanism.extras.get(key, ())
+        if not found or self.from_mjcf or key.kind in ("mesh", "texture"):
+            return found
+        known = kinds_of(_PLAIN.get(key.kind, ""))
+        return tuple([extra for extra in found if extra.format == words.NAME and extra.path.rpartition("@")[2] in known])
 
     def kept_attributes(self, key: Id, path: str = "") -> dict[str, str]:
         """The attributes that the IR cannot represent, of the element's node at this path."""
