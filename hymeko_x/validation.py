@@ -313,7 +313,8 @@ def _check_presence(found: _Findings, role: parts.Role) -> None:
 def _check_size(found: _Findings, view: ShapeView) -> None:
     """Sizes are positive and not absurd."""
     sizes = _sizes(view.shape.geometry)
-    label = f"a {type(view.shape.geometry).__name__.lower()} of {_owner(view)}"
+    kind = type(view.shape.geometry).__name__.lower()
+    label = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind} of {_owner(view)}"
     if any(not (math.isfinite(size) and size > 0.0) for size in sizes):
         message = f"{label} has the sizes {', '.join(f'{size:g}' for size in sizes)}"
         found.error(codes.BAD_SIZE, view.id, message, "sizes are positive numbers of metres")

@@ -90,3 +90,47 @@ def test_an_input_of_another_type_is_no_colour(line: str) -> None:
     }}
 """
     assert outcome(robot(body("a", "") + material).encode(), "robot.usda") == "read"
+
+
+CUBE = """
+ def Cube "c" (prepend apiSchemas = ["PhysicsCollisionAPI"])
+ {{
+  double size = {}
+ }}
+"""
+
+
+def findings(text: str) -> list[str]:
+    """The diagnostics of a stage, with their codes."""
+    report = Report()
+    usd.read(Source("robot.usda", text.encode(), Texts({})), report)
+    return [f"{found.code.id} {found.message}" for found in report]
+
+
+@pytest.mark.unread
+@pytest.mark.parametrize(("size", "what"), [("nan", "number"), ("inf", "size")])
+def test_a_size_that_is_no_number_does_not_count(size: str, what: str) -> None:
+    """A cube without a size has one of 2, and with it a mass."""
+    text = robot(body("a", CUBE.format(size)))
+    assert findings(text) == [f"HX020 'size' is {size}, which is no {what}; it is not used"]
+    found, usual = (
+        usd.read(Source("r.usda", each.encode(), Texts({})), Report()).mechanism for each in (text, robot(body("a", CUBE.format(2))))
+    )
+    assert [part for _, part in found.vertices(Body)] == [part for _, part in usual.vertices(Body)]
+
+
+@pytest.mark.unread
+@pytest.mark.parametrize(
+    ("ops", "flaw"),
+    [
+        ("double3 xformOp:scale = (1, 2, 1)", "is sheared"),
+        ("double3 xformOp:scale = (1, nan, 1)", "has a transform with numbers that are not finite"),
+        ("double3 xformOp:scale = (0, 0, 0)", "is scaled to nothing"),
+        ("double3 xformOp:scale = (2, 2, 2)", ""),
+    ],
+)
+def test_a_transform_that_is_no_pose_with_a_scale_is_reported(ops: str, flaw: str) -> None:
+    turned = CUBE.format('1\n float xformOp:rotateZ = 45\n uniform token[] xformOpOrder = ["xformOp:rotateZ"]')
+    group = f'def Xform "g"\n{{\n{ops}\nuniform token[] xformOpOrder = ["xformOp:scale"]\n{turned}\n}}'
+    found = findings(robot(body("a", group)))
+    assert [text.partition("HX104 /robot/a/g/c ")[2][: len(flaw)] for text in found] == ([flaw] if flaw else [])

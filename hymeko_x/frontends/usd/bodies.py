@@ -48,6 +48,7 @@ def read_body(prim: Prim, builder: UsdBuilder) -> None:
     key = builder.new_id(prim, "body")
     builder.bodies[prim.path] = key
     builder.vertices[key] = Body()
+    builder.check_transform(prim, builder.transforms.of(prim))
     builder.mark_read(prim, f"@{BODY}", *(name for name in prim.properties if name.startswith("xformOp")))
     if prim.kind in ("Xform", ""):
         builder.mark_read(prim, "@type")

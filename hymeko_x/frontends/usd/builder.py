@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.usd.places import Lines
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.stage import Scene
+    from hymeko_x.frontends.usd.transforms import Transform
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.source import Source
 
@@ -82,6 +83,16 @@ class UsdBuilder(Builder, dict=True):
         """Report a warning about a prim."""
         self.report.warn(code, message, self.origin_of(prim), element=prim.path)
 
+    def refuse_value(self, prim: Prim, name: str, value: object, what: str) -> None:
+        """Report an error about the value of an attribute, which is not used."""
+        message = f"'{name}' is {value}, which is no {what}; it is not used"
+        self.report.error(codes.BAD_NUMBER, message, self.origin_of(prim), element=prim.path)
+
+    def check_transform(self, prim: Prim, transform: Transform) -> None:
+        """Report what a pose and a scale cannot represent of the transform of a prim."""
+        if transform.flaw:
+            self.warn(prim, codes.NOT_SAID, f"{prim.path} {transform.flaw}")
+
     def new_id(self, prim: Prim, kind: str, fallback: str | None = None) -> Id:
         """A fresh id for the element that a prim represents, after the name that it has."""
         key = self.fresh(kind, self._name(prim, fallback), self.origin_of(prim))
@@ -128,6 +139,9 @@ class UsdBuilder(Builder, dict=True):
             message = f"'{name}' {has} and takes {_SIZES[name]}; it is not used"
             self.report.error(codes.BAD_VALUE, message, self.origin_of(prim), element=prim.path)
             return None
+        if _has_no_number(read):
+            self.refuse_value(prim, name, value, "number")
+            return None
         if not prim.is_animated(name):
             self.mark_read(prim, name)
         return read
@@ -161,6 +175,12 @@ def _numbers(value: Any, kind: str) -> tuple[float, ...] | None:
     if not isinstance(numbers, list) or not all(isinstance(number, int | float) for number in numbers):
         return None
     return tuple(map(single if kind.removesuffix("[]") in _SINGLE else float, numbers))
+
+
+def _has_no_number(value: Any) -> bool:
+    """Whether a number, or one of a few, is NaN; infinite ones stand for limits and centres that are not given."""
+    numbers = value if isinstance(value, tuple) else (value,)
+    return any(isinstance(number, float) and math.isnan(number) for number in numbers)
 
 
 def _rounded(value: Any, kind: str) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats import usd as words
@@ -40,6 +41,7 @@ def read_shape(prim: Prim, builder: UsdBuilder) -> tuple[Id, ReadShape] | None:
     found = body_at(prim, builder)
     body, owner = found if found is not None else (None, WORLD)
     at = builder.transforms.seen_from(prim, body)
+    builder.check_transform(prim, at)
     pose, mesh, authored = IDENTITY if prim is body else at.pose, None, None
     geometry: Geometry = MeshShape()
     if prim.kind == "Mesh" and not _is_ball(prim, builder):
@@ -77,8 +79,16 @@ def read_shape(prim: Prim, builder: UsdBuilder) -> tuple[Id, ReadShape] | None:
 def _primitive(prim: Prim, scale: Vec3, builder: UsdBuilder) -> gprims.Gprim:
     """The type, sizes, axis and scale of a prim."""
     kind = prim.kind
-    sizes = tuple(builder.number(prim, name, default) for name, default in gprims.SIZES[kind])
+    sizes = tuple(_size(prim, name, default, builder) for name, default in gprims.SIZES[kind])
     return gprims.Gprim(kind, sizes, builder.axis(prim, "axis", "Z"), scale)
+
+
+def _size(prim: Prim, name: str, default: float, builder: UsdBuilder) -> float:
+    size = builder.number(prim, name, default)
+    if math.isfinite(size):
+        return size
+    builder.refuse_value(prim, name, size, "size")
+    return default
 
 
 def _is_ball(prim: Prim, builder: UsdBuilder) -> bool:

@@ -26,11 +26,11 @@ _UNIT = 1e-6
 
 
 class Transform(Struct, frozen=True):
-    """A rigid pose in m and the scale along its axes; ``sheared`` when the matrix has shear besides."""
+    """A rigid pose in m and the scale along its axes; ``flaw`` says in words what else the matrix has, empty for nothing."""
 
     pose: Pose
     scale: Vec3
-    sheared: bool = False
+    flaw: str = ""
 
 
 class Transforms:
@@ -80,21 +80,26 @@ def matrix_of(pose: Pose) -> Any:
     return rotation * Gf.Matrix4d().SetTranslate(Gf.Vec3d(*pose.xyz))
 
 
+_SHEARED = "is sheared, as it is turned in a prim whose scale differs by axis; it is read without the shear"
+
+
 def decomposed(matrix: Any) -> Transform:
-    """The rigid pose and the scale of a matrix; a mirrored one has a negative scale along x."""
+    """The rigid pose and the scale of a matrix; a mirrored one has a negative scale along x. Numbers that are not finite are left out."""
     *rows, at = ((row[0], row[1], row[2]) for row in numbers_of(matrix))
     lengths = [math.sqrt(dot(row, row)) for row in rows]
     xyz = (at[0] + 0.0, at[1] + 0.0, at[2] + 0.0)
-    if min(lengths) < 1e-12 or not all(map(math.isfinite, (*lengths, *xyz))):
+    if not all(map(math.isfinite, (*lengths, *xyz))):
         x, y, z = (v if math.isfinite(v) else 0.0 for v in xyz)
-        return Transform(Pose((x, y, z)), (lengths[0], lengths[1], lengths[2]), True)
+        return Transform(Pose((x, y, z)), (1.0, 1.0, 1.0), "has a transform with numbers that are not finite, which do not count")
+    if min(lengths) < 1e-12:
+        return Transform(Pose(xyz), (lengths[0], lengths[1], lengths[2]), "is scaled to nothing")
     if dot(cross(rows[0], rows[1]), rows[2]) < 0.0:
         lengths[0] = -lengths[0]
     axes = [scaled(row, 1.0 / length) for row, length in zip(rows, lengths, strict=True)]
-    sheared = max(abs(dot(axes[0], axes[1])), abs(dot(axes[0], axes[2])), abs(dot(axes[1], axes[2]))) > 1e-4
+    is_sheared = max(abs(dot(axes[0], axes[1])), abs(dot(axes[0], axes[2])), abs(dot(axes[1], axes[2]))) > 1e-4
     turn = Gf.Matrix3d(*axes[0], *axes[1], *axes[2])
     turn.Orthonormalize(False)
-    return Transform(_pose(xyz, quat_of(turn.ExtractRotation().GetQuat())), _scale(lengths), sheared)
+    return Transform(_pose(xyz, quat_of(turn.ExtractRotation().GetQuat())), _scale(lengths), _SHEARED if is_sheared else "")
 
 
 def _pose(xyz: Vec3, quat: Quat) -> Pose:
