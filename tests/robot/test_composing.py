@@ -189,8 +189,8 @@ def test_sensors_of_a_hand_in_mjcf_come_along_on_an_arm_in_another_format() -> N
 def test_a_hand_in_mjcf_keeps_its_contacts_on_an_arm_in_another_format() -> None:
     pads = hx.loads(
         """<mujoco><default><default class="pad"><geom condim="4" solref=".002 1" conaffinity="5"/></default></default><worldbody>
-        <body name="palm"><joint name="close" solreflimit=".005 1"/><geom name="pad" class="pad" type="box" size=".1 .1 .1" contype="6"/>
-        <site name="tip" group="3"/></body></worldbody></mujoco>""",
+        <body name="palm" gravcomp="1"><joint name="close" solreflimit=".005 1"/>
+        <geom name="pad" class="pad" type="box" size=".1 .1 .1" contype="6"/><site name="tip" group="3"/></body></worldbody></mujoco>""",
         "mjcf",
     )
     model = claw().attach(pads, at="finger", prefix="h/").to_mujoco()
@@ -198,6 +198,7 @@ def test_a_hand_in_mjcf_keeps_its_contacts_on_an_arm_in_another_format() -> None
     assert (pad.contype, pad.conaffinity, pad.condim, pad.solref[0]) == (6, 5, 4, 0.002)
     assert model.jnt_solref[model.joint("h/close").id][0] == 0.005
     assert model.site("h/tip").group == 3
+    assert model.body_gravcomp[model.body("h/palm").id] == 1
 
 
 def test_what_floats_in_its_own_world_floats_in_a_scene() -> None:

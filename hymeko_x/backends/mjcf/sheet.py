@@ -45,8 +45,16 @@ Attributes = dict[str, str | None]
 _EMPTY: Mapping[str, str] = {}
 _SIGNED_ZERO = re.compile(r"(?<!\S)-0(?!\S)")
 _REFERENCES = frozenset(("mesh", "material", "texture"))
-_PLAIN: Mapping[str, str] = {"shape": "body/geom", "joint": "body/joint", "frame": "body/site", "coupling": "equality/joint"}
+_PLAIN: Mapping[str, str] = {
+    "body": "body",
+    "shape": "body/geom",
+    "joint": "body/joint",
+    "frame": "body/site",
+    "coupling": "equality/joint",
+}
 """The places in the schema of elements of which a number or a word of MJCF stands for itself, by the kinds of elements."""
+_OF_ROOTS = frozenset(("mocap", "sleep"))
+"""The words that only bodies right in the world have."""
 
 
 class MjcfSheet(Struct):
@@ -121,7 +129,7 @@ class MjcfSheet(Struct):
         found = self.mechanism.extras.get(key, ())
         if not found or self.from_mjcf or key.kind in ("mesh", "texture"):
             return found
-        known = kinds_of(_PLAIN.get(key.kind, ""))
+        known = kinds_of(_PLAIN.get(key.kind, "")).keys() - _OF_ROOTS
         return tuple([extra for extra in found if extra.format == words.NAME and extra.path.rpartition("@")[2] in known])
 
     def kept_attributes(self, key: Id, path: str = "") -> dict[str, str]:
