@@ -41,6 +41,8 @@ def laid_out(text: str, depth: int, *, spread: bool = False) -> str:
 
 def at_depth(text: str, depth: int) -> str:
     """A text of which each line is one tidy tag, with its lines at this depth; any other one as it is."""
+    if text.rpartition("\n")[2].startswith(f"{_STEP * depth}<"):
+        return text
     there = _depth_of(text)
     return text if there is None else _shifted(text, there, depth)
 
