@@ -79,9 +79,10 @@ def included_source(include: Element, source: Source) -> tuple[str, Source]:
     if include.children:
         raise refuse(codes.UNKNOWN_WORD, "<include> has no children", include.origin)
     uri = uri.replace("\\", "/")
-    beside = posixpath.join(folder_from(source.name, include.file), uri)
-    place = next((place for place in (uri, beside) if source.files.find(place) is not None), uri)
-    path = source.files.find(place)
+    place, path = uri, source.files.find(uri)
+    if path is None:
+        place = posixpath.join(folder_from(source.name, include.file), uri)
+        path = source.files.find(place)
     if path is None:
         raise refuse(codes.CANNOT_READ, f"the included file '{uri}' was not found", include.origin)
     name = os.path.normpath(os.path.join(os.path.dirname(source.name), place))
