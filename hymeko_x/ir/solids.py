@@ -65,13 +65,22 @@ def _unit(moments: Vec3) -> Solid:
     return Solid(1.0, ZERO, (*moments, 0.0, 0.0, 0.0))
 
 
+_MOST = 1e120
+"""Solids of a greater volume in m^3, or greater moments in m^2, have tensors that doubles cannot hold."""
+
+
 def _spread(geometry: Geometry) -> tuple[float, Vec3] | None:
-    """The volume in m^3 of a primitive, and its principal moments in m^2 per kg; None for what is none."""
+    """The volume in m^3 of a primitive, and its principal moments in m^2 per kg; None for what is none, and for sizes beyond measure."""
+    found = _measures(geometry)
+    return found if found is not None and all(measure < _MOST for measure in (found[0], *found[1])) else None
+
+
+def _measures(geometry: Geometry) -> tuple[float, Vec3] | None:
     match geometry:
         case Box((x, y, z)):
             return x * y * z, ((y * y + z * z) / 12.0, (x * x + z * z) / 12.0, (x * x + y * y) / 12.0)
         case Sphere(r):
-            return 4.0 / 3.0 * math.pi * r**3, (0.4 * r * r,) * 3
+            return 4.0 / 3.0 * math.pi * r * r * r, (0.4 * r * r,) * 3
         case Ellipsoid((a, b, c)):
             return 4.0 / 3.0 * math.pi * a * b * c, ((b * b + c * c) / 5.0, (a * a + c * c) / 5.0, (a * a + b * b) / 5.0)
         case Cylinder(r, length):
@@ -85,7 +94,7 @@ def _spread(geometry: Geometry) -> tuple[float, Vec3] | None:
 
 def _capsule(r: float, length: float) -> tuple[float, Vec3]:
     """A cylinder between two half balls, whose own centres are 3/8 of the radius above the cylinder's ends."""
-    middle, ends = math.pi * r * r * length, 4.0 / 3.0 * math.pi * r**3
+    middle, ends = math.pi * r * r * length, 4.0 / 3.0 * math.pi * r * r * r
     whole = middle + ends
     if whole <= 0.0:
         return 0.0, ZERO

@@ -134,3 +134,10 @@ def test_a_transform_that_is_no_pose_with_a_scale_is_reported(ops: str, flaw: st
     group = f'def Xform "g"\n{{\n{ops}\nuniform token[] xformOpOrder = ["xformOp:scale"]\n{turned}\n}}'
     found = findings(robot(body("a", group)))
     assert [text.partition("HX104 /robot/a/g/c ")[2][: len(flaw)] for text in found] == ([flaw] if flaw else [])
+
+
+@pytest.mark.unread
+@pytest.mark.parametrize("shape", [CUBE.format(1e154), CUBE.format(1e154).replace("Cube", "Sphere").replace("size", "radius")])
+def test_a_shape_beyond_measure_gives_no_mass(shape: str) -> None:
+    found = usd.read(Source("r.usda", robot(body("a", shape)).encode(), Texts({})), Report()).mechanism
+    assert [part.inertial for _, part in found.vertices(Body)] == [None]
