@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from hymeko_x.backends.mjcf.frames import open_body
 from hymeko_x.backends.mjcf.geoms import write_geom
 from hymeko_x.backends.mjcf.joints import write_dof
 from hymeko_x.backends.mjcf.mounts import write_mount
-from hymeko_x.backends.mjcf.sheet import open_body, tag_of
+from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf.codec import POSE
 from hymeko_x.formats.mjcf.notations import CHILDCLASS, frame_of
 from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
@@ -20,7 +21,8 @@ from hymeko_x.ir.written import clean_pose
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.mjcf.sheet import BodyTag, MjcfSheet
+    from hymeko_x.backends.mjcf.frames import BodyTag
+    from hymeko_x.backends.mjcf.sheet import MjcfSheet
     from hymeko_x.ir.mechanism import Id, JointView, ShapeView
     from hymeko_x.ir.parts import Inertial
 

@@ -17,7 +17,8 @@ from hymeko_x.rewrite.densities import WATER
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.backends.mjcf.sheet import BodyTag, MjcfSheet
+    from hymeko_x.backends.mjcf.frames import BodyTag
+    from hymeko_x.backends.mjcf.sheet import MjcfSheet
     from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.ir.mechanism import ShapeView
     from hymeko_x.ir.parts import Geometry

@@ -16,7 +16,8 @@ from hymeko_x.ir.values import IDENTITY, ZERO, Written, Z, apply, inverse, rotat
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.backends.mjcf.sheet import BodyTag, MjcfSheet
+    from hymeko_x.backends.mjcf.frames import BodyTag
+    from hymeko_x.backends.mjcf.sheet import MjcfSheet
     from hymeko_x.formats.mjcf.codec import Group, Settings
     from hymeko_x.ir.mechanism import JointView
     from hymeko_x.ir.parts import Dof

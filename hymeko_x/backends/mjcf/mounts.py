@@ -11,7 +11,8 @@ from hymeko_x.formats.mjcf.places import CAMERA, LIGHT, SITE, seen_from
 from hymeko_x.ir.parts import Camera, Frame, Light
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.mjcf.sheet import BodyTag, MjcfSheet
+    from hymeko_x.backends.mjcf.frames import BodyTag
+    from hymeko_x.backends.mjcf.sheet import MjcfSheet
     from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.ir.mechanism import Id, MountView
     from hymeko_x.ir.parts import Parameters

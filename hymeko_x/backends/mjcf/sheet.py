@@ -10,13 +10,11 @@ import re
 from typing import TYPE_CHECKING, Any, TypeVar
 from xml.parsers.expat import ExpatError
 
-import msgspec
 from msgspec import Struct, field
 
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import Classes, merge
-from hymeko_x.formats.mjcf.codec import POSE, BadAttribute, InheritedValues, Settings, parameter_text, parameter_value, undone
-from hymeko_x.formats.mjcf.notations import frame
+from hymeko_x.formats.mjcf.codec import BadAttribute, InheritedValues, Settings, parameter_text, parameter_value, undone
 from hymeko_x.formats.mjcf.places import same_value
 from hymeko_x.formats.mjcf.schema import attributes_of, kinds_of
 from hymeko_x.formats.mjcf.tree import COMMENT, parse_text
@@ -24,7 +22,7 @@ from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Joint, Mesh, Shape, Texture
-from hymeko_x.ir.values import IDENTITY, Pose, compose, numbers_text
+from hymeko_x.ir.values import numbers_text
 from hymeko_x.source import file_stem
 from hymeko_x.xml.printing import Tag
 
@@ -338,78 +336,3 @@ def _as_tag(extra: Extra) -> Tag | str:
                 tag.children.append(inner)
                 stack.append((child, inner))
     return top
-
-
-# ---- bodies -----------------------------------------------------------------------------------------------------------------
-
-
-class FrameTag(msgspec.Struct, frozen=True):
-    """A <frame>: its attributes, its pose in the body, its childclass, the frame around it, and its depth, 1 for the outermost."""
-
-    number: str
-    attributes: dict[str, str]
-    pose: Pose
-    childclass: str | None
-    outer: FrameTag | None
-    depth: int
-
-
-class BodyTag(Struct):
-    """A body (or the world) that is being written: its element, the childclass in force in it, and its frames by number."""
-
-    key: Id
-    tag: Tag
-    childclass: str | None
-    frames: dict[str, FrameTag]
-    opened: list[tuple[str, Tag]] = field(default_factory=list)
-
-    def frame(self, number: str | None) -> FrameTag | None:
-        """The frame of this number, or None."""
-        return self.frames.get(number) if number else None
-
-    def add(self, tag: Tag, frame: FrameTag | None) -> None:
-        """Put an element into the frame; frames are opened and closed where they change, and named when they open first."""
-        if frame is None and not self.opened:
-            self.tag.children.append(tag)
-            return
-        closed: list[FrameTag] = []
-        while frame is not None and not self._is_open(frame):
-            closed.append(frame)
-            frame = frame.outer
-        del self.opened[frame.depth if frame else 0 :]
-        for found in reversed(closed):
-            inner = Tag("frame", dict(found.attributes))
-            found.attributes.pop("name", None)
-            self._innermost.children.append(inner)
-            self.opened.append((found.number, inner))
-        self._innermost.children.append(tag)
-
-    def _is_open(self, frame: FrameTag) -> bool:
-        return len(self.opened) >= frame.depth and self.opened[frame.depth - 1][0] == frame.number
-
-    @property
-    def _innermost(self) -> Tag:
-        return self.opened[-1][1] if self.opened else self.tag
-
-
-def open_body(sheet: MjcfSheet, key: Id, tag: Tag, childclass: str | None) -> BodyTag:
-    """A body with the frames that its author put into it."""
-    frames: dict[str, FrameTag] = {}
-    while sheet.from_mjcf and (noted := sheet.mechanism.notation(key, frame(len(frames) + 1))) is not None:
-        number = str(len(frames) + 1)
-        outer, attributes = noted
-        parent = frames.get(outer)
-        try:
-            pose = POSE.read(merge({}, attributes), sheet.settings)
-        except BadAttribute:
-            pose = IDENTITY
-        inherited = parent.childclass if parent else childclass
-        frames[number] = FrameTag(
-            number,
-            attributes,
-            compose(parent.pose, pose) if parent else pose,
-            attributes.get("childclass", inherited),
-            parent,
-            parent.depth + 1 if parent else 1,
-        )
-    return BodyTag(key, tag, childclass, frames)
