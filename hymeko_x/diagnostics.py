@@ -168,6 +168,11 @@ def listed(words: Sequence[str], most: int) -> str:
     return ", ".join(words[:most]) + (", ..." if len(words) > most else "")
 
 
+def with_article(noun: str) -> str:
+    """A noun for a message: ``a box``, ``an ellipsoid``, ``an hfield``."""
+    return f"{'an' if noun[0] in 'aeiou' or noun == 'hfield' else 'a'} {noun}"
+
+
 def refuse(
     code: Code, message: str, origin: Origin | None = None, *, element: str = "", hint: str = "", excerpt: tuple[str, ...] = ()
 ) -> Refusal:

@@ -16,7 +16,7 @@ from msgspec import Struct
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import package_hint
 from hymeko_x.assets.shelf import read_file
-from hymeko_x.diagnostics import Origin
+from hymeko_x.diagnostics import Origin, with_article
 from hymeko_x.ir import parts
 from hymeko_x.ir.ids import LUMPED_KINDS
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, JointView, Mechanism, ShapeView
@@ -313,8 +313,7 @@ def _check_presence(found: _Findings, role: parts.Role) -> None:
 def _check_size(found: _Findings, view: ShapeView) -> None:
     """Sizes are positive and not absurd."""
     sizes = _sizes(view.shape.geometry)
-    kind = type(view.shape.geometry).__name__.lower()
-    label = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind} of {_owner(view)}"
+    label = f"{with_article(type(view.shape.geometry).__name__.lower())} of {_owner(view)}"
     if any(not (math.isfinite(size) and size > 0.0) for size in sizes):
         message = f"{label} has the sizes {', '.join(f'{size:g}' for size in sizes)}"
         found.error(codes.BAD_SIZE, view.id, message, "sizes are positive numbers of metres")

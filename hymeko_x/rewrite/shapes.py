@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.diagnostics import with_article
 from hymeko_x.formats import native_format
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, ShapeView, shape_edge
@@ -243,8 +244,7 @@ def approximate_shapes(mechanism: Mechanism, context: Context, kinds: tuple[type
         else:
             edges |= _pieces(view, names)
         kind = type(geometry).__name__.lower()
-        article = "an" if kind[0] in "aeiou" else "a"
-        message = f"{view.id} is {article} {kind}, which the format cannot represent; it is written as {_INSTEAD[kind]}"
+        message = f"{view.id} is {with_article(kind)}, which the format cannot represent; it is written as {_INSTEAD[kind]}"
         context.report.note(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
     return mechanism.replace(vertices=meshes, edges=edges)
 

@@ -127,7 +127,7 @@ def render(tag: Tag, depth: int = 0) -> list[str]:
     while True:
         for child in row:
             if isinstance(child, str):
-                text = at_depth(child, min(depth + len(around), 40)) if "\n" in child else child
+                text = at_depth(child, len(indent) // 2) if "\n" in child else child
                 lines.append(indent + text if text else "")
                 continue
             name, children = child.name, child.children

@@ -8,7 +8,7 @@ from msgspec import field
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import refuse
+from hymeko_x.diagnostics import refuse, with_article
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
 from hymeko_x.formats.hymeko.classes import classes_in_force
 from hymeko_x.formats.hymeko.files import full_uri
@@ -211,7 +211,7 @@ class HymekoBuilder(Builder):
 
 def _listed(kinds: tuple[str, ...]) -> str:
     """The kinds with their article: ``an actuator or sensor``."""
-    return f"{'an' if kinds[0][0] in 'aeiou' else 'a'} {' or '.join(kinds)}"
+    return with_article(" or ".join(kinds))
 
 
 def without_implied(mechanism: Mechanism, implied: set[Id]) -> Mechanism:

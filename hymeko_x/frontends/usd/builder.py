@@ -83,10 +83,13 @@ class UsdBuilder(Builder, dict=True):
         """Report a warning about a prim."""
         self.report.warn(code, message, self.origin_of(prim), element=prim.path)
 
+    def error(self, prim: Prim, code: Code, message: str) -> None:
+        """Report an error about a prim."""
+        self.report.error(code, message, self.origin_of(prim), element=prim.path)
+
     def refuse_value(self, prim: Prim, name: str, value: object, what: str) -> None:
         """Report an error about the value of an attribute, which is not used."""
-        message = f"'{name}' is {value}, which is no {what}; it is not used"
-        self.report.error(codes.BAD_NUMBER, message, self.origin_of(prim), element=prim.path)
+        self.error(prim, codes.BAD_NUMBER, f"'{name}' is {value}, which is no {what}; it is not used")
 
     def check_transform(self, prim: Prim, transform: Transform) -> None:
         """Report what a pose and a scale cannot represent of the transform of a prim."""
@@ -136,8 +139,7 @@ class UsdBuilder(Builder, dict=True):
         read = _numbers(value, kind) if name in _SIZES else _rounded(value, kind)
         if name in _SIZES and (read is None or len(read) != _SIZES[name]):
             has = "is no row of numbers" if read is None else f"has {len(read)} numbers"
-            message = f"'{name}' {has} and takes {_SIZES[name]}; it is not used"
-            self.report.error(codes.BAD_VALUE, message, self.origin_of(prim), element=prim.path)
+            self.error(prim, codes.BAD_VALUE, f"'{name}' {has} and takes {_SIZES[name]}; it is not used")
             return None
         if _has_no_number(read):
             self.refuse_value(prim, name, value, "number")

@@ -101,7 +101,7 @@ def _end(prim: Prim, side: int, builder: UsdBuilder) -> End | None:
     target = builder.scene.prims.get(targets[0])
     if target is None:
         message = f"joint '{prim.path}': body{side} is '{targets[0]}', which does not exist; the joint is kept as written"
-        builder.report.error(codes.UNDEFINED_REFERENCE, message, builder.origin_of(prim), element=prim.path)
+        builder.error(prim, codes.UNDEFINED_REFERENCE, message)
         return None
     found = body_at(target, builder)
     frame = _in_frame(builder.transforms.of(target), local)

@@ -40,8 +40,7 @@ def read_mesh(prim: Prim, builder: UsdBuilder, scale: Vec3) -> Id | None:
     sizes, corners = sizes.astype(np.int64), corners.astype(np.int64)
     damage = "has no points or no faces" if any(array is None for array in arrays) else _damage(vertices, sizes, corners)
     if damage:
-        message = f"mesh '{prim.path}' {damage}; it is kept as written"
-        builder.report.error(codes.ASSET_UNREADABLE, message, builder.origin_of(prim), element=prim.path)
+        builder.error(prim, codes.ASSET_UNREADABLE, f"mesh '{prim.path}' {damage}; it is kept as written")
         return None
     faces = fans(sizes, corners)
     if not prim.is_animated("points"):

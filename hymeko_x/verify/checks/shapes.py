@@ -13,6 +13,7 @@ import numpy as np
 from msgspec import Struct
 from msgspec.structs import replace
 
+from hymeko_x.diagnostics import with_article
 from hymeko_x.verify.checks.pair import Differences, Pair, counted
 from hymeko_x.verify.features import Feature
 from hymeko_x.verify.meshes import ALLOWED, is_thickened, mesh_distance
@@ -218,7 +219,7 @@ def _may_be_thickened(pair: Pair, shapes: Sequence[Shape]) -> bool:
 
 
 def _label(shape: Shape) -> str:
-    return f"{shape.kind} '{shape.name}'" if shape.name else f"{'an' if shape.kind[0] in 'aeiouh' else 'a'} {shape.kind}"
+    return f"{shape.kind} '{shape.name}'" if shape.name else with_article(shape.kind)
 
 
 # ---- primitives ------------------------------------------------------------------------------------------------------
