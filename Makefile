@@ -5,12 +5,13 @@ BIN := .venv/bin
 STAMP := .venv/.installed
 JOBS ?= 2
 
-.PHONY: demo docs test test-full test-format coverage lint types pytest bench peers fuzz corpus vsix clean help
+.PHONY: demo docs test test-full test-hours test-format coverage lint types pytest bench peers fuzz corpus vsix clean help
 
 help:
 	@echo "make demo   install into .venv, convert a real humanoid, show the result"
 	@echo "make test   ruff, mypy --strict, pytest"
-	@echo "make test-full  the same with the tests that take minutes: every robot, every size"
+	@echo "make test-full  the same with the tests that take minutes, about an hour in all: large sizes, more robots"
+	@echo "make test-hours  what these leave out: every robot in every format, twenty edits of each"
 	@echo "make test-format FORMAT=urdf  what belongs to one format, without real robots"
 	@echo "make coverage  which lines no test runs; writes docs/coverage.md"
 	@echo "make bench  speed as ratios against yardsticks timed in the same run, other people's programs among them; writes docs/speed.md"
@@ -44,7 +45,10 @@ pytest: $(STAMP)
 	$(BIN)/python -m pytest -W error -n $(JOBS) -m "not full" tests
 
 test-full: lint types
-	$(BIN)/python -m pytest -W error -n $(JOBS) tests
+	$(BIN)/python -m pytest -W error -n $(JOBS) -m "not hours" tests
+
+test-hours: $(STAMP)
+	$(BIN)/python -m pytest -W error -n $(JOBS) -m hours tests
 
 FORMAT ?= urdf
 

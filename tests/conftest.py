@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import random
+from collections import defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -99,7 +101,7 @@ LARGE = ("newton/ant_multi.usda",)
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """`@pytest.mark.robots("urdf")` runs a test once for each development file of that format, as its argument ``robot`` (a path).
 
-    With ``every=3`` each third file has its turn in `make test`, all have it in `make test-full`; so have the robots of LARGE.
+    With ``every=3`` each third file has its turn in `make test`, the others and those of LARGE are `full`.
     """
     mark = metafunc.definition.get_closest_marker("robots")
     if mark is None:
@@ -111,6 +113,26 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         later = [pytest.mark.full] if number % every or file.id in LARGE else []
         robots.append(pytest.param(file, id=file.id, marks=[pytest.mark.corpus, *later]))
     metafunc.parametrize("robot", robots, indirect=True)
+
+
+MOST = 40
+"""So many cases of one test run with `make test-full`; those of tests with more are drawn."""
+
+
+@pytest.hookimpl(tryfirst=True)  # marks decide which tests run
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Of a `full` test with many cases, such as every robot in every format, the same few run with `make test-full`.
+
+    The others have the mark `hours`.
+    """
+    cases: dict[str, list[pytest.Item]] = defaultdict(list)
+    for item in items:
+        if item.get_closest_marker("full") is not None and item.get_closest_marker("hours") is None:
+            cases[item.nodeid.partition("[")[0]].append(item)
+    for name, found in cases.items():
+        drawn = random.Random(name).sample(found, min(MOST, len(found)))
+        for item in {*found} - {*drawn}:
+            item.add_marker("hours")
 
 
 @pytest.fixture

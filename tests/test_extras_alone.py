@@ -60,7 +60,10 @@ VERBS_OF = {
     ],
     "xacro": ["convert arm.xacro out.urdf", "convert arm.urdf again.xacro"],
 }
-"""The verbs that need each extra. Not here: `ray`, `sdf` and `testing` have no verbs, and `view` serves until it is stopped."""
+"""The verbs that need each extra; the first one is tried in every run, the others with `make test-full`.
+
+Not here: `ray`, `sdf` and `testing` have no verbs, and `view` serves until it is stopped.
+"""
 
 
 def required(name: str, wanted: frozenset[str]) -> Iterator[tuple[str, frozenset[str]]]:
@@ -103,7 +106,14 @@ def environment(extra: str, folder: Path) -> dict[str, str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("extra", "words"), [(extra, words) for extra, lines in VERBS_OF.items() for words in lines])
+@pytest.mark.parametrize(
+    ("extra", "words"),
+    [
+        pytest.param(extra, words, marks=[pytest.mark.full] if number else [])
+        for extra, lines in VERBS_OF.items()
+        for number, words in enumerate(lines)
+    ],
+)
 def test_an_extra_alone_makes_its_verbs_work(extra: str, words: str, tmp_path: Path) -> None:
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)

@@ -185,7 +185,7 @@ def states(way: Way, folder: Path) -> Iterator[tuple[list[object], bool]]:
             return
 
 
-LATER = ("urdf with points of its own", "mjcf from mjcf", "usda", "hymeko")
+LATER = ("urdf with points of its own", "mjcf from mjcf", "usda", "hymeko", "xacro in two files", "usda in layers")
 """Ways whose deaths are like those of others: they have their turn in `make test-full`."""
 
 
@@ -211,6 +211,7 @@ def test_what_replaces_an_older_output_is_what_a_first_run_writes(way: Way, tmp_
     assert tree(over) == tree(fresh)
 
 
+@pytest.mark.full
 def test_a_later_run_removes_what_a_killed_one_left_but_for_temporary_siblings(tmp_path: Path) -> None:
     way = WAYS["mjcf"]
     states_seen = len(list(states(way, tmp_path)))

@@ -57,7 +57,13 @@ def session(text: str, folder: Path) -> str:
     return BLOCK.sub(rerun, text)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+LONG = ("dynamics.md",)
+"""Pages whose commands take half a minute: they have their turn in `make test-full`."""
+
+
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, id=page.name, marks=[pytest.mark.full] if page.name in LONG else []) for page in PAGES]
+)
 def test_the_session_in_a_page_is_what_really_happens(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = page.read_text("utf-8")
     assert session(text, tmp_path) == text

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -81,6 +82,7 @@ class DevelopmentFile(Struct, frozen=True):
         return f"{self.package.name}/{Path(self.path).name}"
 
 
+@cache
 def load() -> tuple[WheelPackage, ...]:
     """Every package of the catalogue, in its order."""
     return parse(catalogue_path().read_text("utf-8"))

@@ -96,6 +96,7 @@ def test_a_killed_runner_goes_on_where_it_was(robots: Path, undisturbed: Path, t
     assert facts(results) == facts(undisturbed)
 
 
+@pytest.mark.full
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks for processes in /proc")
 def test_killed_workers_change_nothing(robots: Path, undisturbed: Path, tmp_path: Path) -> None:
@@ -135,6 +136,7 @@ def test_results_are_not_mixed_up(robots: Path, undisturbed: Path) -> None:
     assert "the results there are of a run with other pairs" in other.stderr
 
 
+@pytest.mark.full
 def test_the_same_results_give_the_same_report(undisturbed: Path, tmp_path: Path) -> None:
     for name in ("a", "b"):
         corpus("stats", str(undisturbed), "-o", str(tmp_path / name))

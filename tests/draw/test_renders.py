@@ -183,6 +183,7 @@ SKINNED = """<mujoco model="r"><default><geom contype="0" conaffinity="0"/></def
   <geom type="mesh" mesh="bone" group="5" rgba="0.5 0.5 0.5 1"/></body></worldbody></mujoco>"""
 
 
+@pytest.mark.full
 def test_bones_below_a_skin_are_compared(tmp_path: Path) -> None:
     (tmp_path / "r.xml").write_text(SKINNED)
     found = renders.drawn(str(tmp_path / "r.xml"))
@@ -194,6 +195,7 @@ TIED = """<mujoco model="r"><worldbody><body name="b" pos="0 0 1"><joint name="j
 <tendon><spatial name="cable" width="0.03" rgba="0.9 0.1 0.1 1"><site site="s"/><site site="t"/></spatial></tendon></mujoco>"""
 
 
+@pytest.mark.full
 def test_a_robot_with_a_cable_is_compared_without_it_in_formats_that_have_no_tendons(tmp_path: Path) -> None:
     (tmp_path / "r.xml").write_text(TIED)
     found = renders.drawn(str(tmp_path / "r.xml"))
@@ -228,6 +230,7 @@ WOODEN = """<mujoco model="r"><asset><texture name="wood" type="cube" file="wood
 <worldbody><body name="b" pos="0 0 1"><freejoint/><geom type="box" size="0.2 0.3 0.4" material="wood"/></body></worldbody></mujoco>"""
 
 
+@pytest.mark.full
 def test_an_image_on_the_sides_of_a_box_is_there_in_every_format(tmp_path: Path) -> None:
     wood = np.zeros((32, 32, 3), np.uint8)
     wood[:16, :16], wood[16:, :16], wood[16:, 16:] = (60, 160, 60), (200, 200, 60), (160, 60, 60)

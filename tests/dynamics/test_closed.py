@@ -140,6 +140,7 @@ def test_a_simulation_keeps_the_loops_closed(found: Multibody) -> None:
         assert np.abs(found.closed_at(row[: found.tree.nq])[0]).max() < 1e-7
 
 
+@pytest.mark.full
 def test_the_formulas_of_a_loop_have_their_jacobian() -> None:
     """Of a linkage in a plane two rows: what is across the plane is closed everywhere."""
     found = hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko").mechanism)

@@ -223,5 +223,13 @@ def test_edits_of_few_robots_come_home(file: DevelopmentFile, target: str, real_
 @pytest.mark.full
 @pytest.mark.robots("urdf", "mjcf")
 @pytest.mark.parametrize("target", KINDS)
+def test_each_kind_of_edit_of_every_robot_comes_home(robot: Path, target: str) -> None:
+    judge(robot, target, len(KINDS[target]))
+
+
+@pytest.mark.full
+@pytest.mark.hours
+@pytest.mark.robots("urdf", "mjcf")
+@pytest.mark.parametrize("target", KINDS)
 def test_twenty_edits_of_every_robot_come_home(robot: Path, target: str) -> None:
     judge(robot, target, 20)

@@ -176,6 +176,7 @@ def test_planted_limbs_are_found(segments: list[tuple[str, float, float]], legs:
     assert size(found) < size(Factored(tuple(forms)))
 
 
+@pytest.mark.full
 @pytest.mark.slow
 def test_the_time_is_near_linear_in_the_number_of_links() -> None:
     def factoring(links: int) -> Callable[[], object]:

@@ -246,5 +246,6 @@ def _converting(count: int) -> Callable[[], object]:
     return work
 
 
+@pytest.mark.full
 def test_reading_and_writing_a_chain_is_linear() -> None:
     assert_at_most(1.5, _converting(4000), _converting(500), count=8)

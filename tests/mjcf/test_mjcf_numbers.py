@@ -81,6 +81,7 @@ def judged(asked: list[Place]) -> tuple[set[Apart], set[Apart]]:
     return set(apart(asked)), {line for line in known() if line.place in names}
 
 
+@pytest.mark.full
 @QUIET
 def test_mujoco_and_we_take_the_same_numbers_of_some_attributes() -> None:
     found, listed = judged(list(places())[::SAMPLE])

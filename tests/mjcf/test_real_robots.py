@@ -16,7 +16,7 @@ from tests.mjcf.convert import Converted, convert, worst_pose_error
 SAME = 1e-9
 
 
-@pytest.mark.robots("urdf", every=2)
+@pytest.mark.robots("urdf", every=10)
 @pytest.mark.unread("HX005")
 def test_mujoco_compiles_it_and_agrees_with_pinocchio_on_poses_masses_and_tensors(robot: Path) -> None:
     done = convert(open_source(str(robot)))

@@ -136,7 +136,7 @@ def test_what_a_class_gives_is_not_written_again() -> None:
     assert '<joint name="j" class="c"/>' in written
 
 
-@pytest.mark.robots("mjcf", every=2)
+@pytest.mark.robots("mjcf", every=5)
 @pytest.mark.slow
 def test_real_models_are_the_same_bit_for_bit(robot: Path) -> None:
     original = mujoco.MjModel.from_xml_path(str(robot))

@@ -49,7 +49,7 @@ def converting(content: str) -> Callable[[], object]:
     ("make", "count"),
     [
         pytest.param(nested_bodies, 300, id="bodies in a chain"),
-        pytest.param(nested_frames, 1000, id="frames in frames"),
+        pytest.param(nested_frames, 1000, id="frames in frames", marks=pytest.mark.full),
         pytest.param(many_geoms, 1000, id="geoms"),
         pytest.param(one_mesh, 5000, id="points of an inline mesh"),
     ],

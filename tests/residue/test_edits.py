@@ -74,6 +74,7 @@ def test_edits_of_an_mjcf_survive_and_the_rest_of_the_urdf_is_restored(arm: str,
     _back_from(arm, "mjcf", edits, hx.loads(URDF, "urdf").mechanism)
 
 
+@pytest.mark.full
 @settings(max_examples=25, deadline=None)
 @given(st.lists(xacro_edits(), min_size=1, max_size=3))
 def test_edits_of_a_xacro_survive_and_the_rest_of_the_mjcf_is_restored(macros: str, edits: list[Edit]) -> None:
@@ -82,7 +83,7 @@ def test_edits_of_a_xacro_survive_and_the_rest_of_the_mjcf_is_restored(macros: s
 
 @settings(max_examples=40, deadline=None)
 @given(st.lists(usd_edits(), min_size=1, max_size=3))
-@pytest.mark.parametrize(("source", "own"), [(PLAIN_MJCF, "mjcf"), (URDF, "urdf")])
+@pytest.mark.parametrize(("source", "own"), [pytest.param(PLAIN_MJCF, "mjcf", marks=pytest.mark.full), (URDF, "urdf")])
 @pytest.mark.unread("HX009", "HX040")
 def test_edits_of_a_stage_survive_and_the_rest_is_restored(source: str, own: str, edits: list[Edit]) -> None:
     robot = hx.loads(source, own).mechanism

@@ -30,7 +30,7 @@ def test_any_mechanism_is_restored_from_any_image(source: Mechanism, image: Mech
     assert list(report) == []
 
 
-@pytest.mark.parametrize("format", ["urdf", "xacro", "mjcf", "usd"])
+@pytest.mark.parametrize("format", ["urdf", pytest.param("xacro", marks=pytest.mark.full), "mjcf", "usd"])
 @settings(max_examples=20, deadline=None, suppress_health_check=list(HealthCheck))
 @given(robot=mechanisms())
 @pytest.mark.unread  # generated or damaged input: any

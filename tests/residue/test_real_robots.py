@@ -12,7 +12,7 @@ from hymeko_x.diagnostics import Report
 from tests.residue.exactness import unequal
 
 SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "xacro": ".xacro", "usd": ".usda"}
-EVERY = {"urdf": 15, "mjcf": 16, "usd": 10, "xacro": 15}
+EVERY = {"urdf": 30, "mjcf": 32, "usd": 20, "xacro": 30}
 """One of so many development files is looked at in every run, the others with `make test-full`."""
 
 LEGS = [

@@ -97,7 +97,7 @@ def again(data: bytes, format: str, keep: Any) -> bytes:
     return pipeline.convert(robot, row, Options(keep=keep, lenient=True), NoFiles(), Report(), passed=passed).package.main
 
 
-@pytest.mark.parametrize("format", ["urdf", "xacro", "mjcf", "usd"])
+@pytest.mark.parametrize("format", ["urdf", pytest.param("xacro", marks=pytest.mark.full), "mjcf", "usd"])
 @settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.data(), st.sampled_from(BASES), st.sampled_from(ACTUATORS), st.sampled_from([None, "inside"]))
 @pytest.mark.unread  # generated or damaged input: any
@@ -135,7 +135,7 @@ def test_within_one_format_nothing_is_kept_but_what_was_kept_goes_along(text: st
 
 CHOICES = ((None, None), ("free", "position"), ("fixed", "none"), ("free", "motor"), (None, "velocity"))
 TARGETS = {**SUFFIXES, "sdf": ".sdf", "hymeko": ".hymeko"}
-EVERY = 199
+EVERY = 398
 WAYS = [
     (file, target, *CHOICES[(number + place) % len(CHOICES)])
     for number, (file, (place, target)) in enumerate(
@@ -184,6 +184,7 @@ def test_every_real_robot_is_the_same_after_a_second_conversion(
 HUMANOID = next(file for file in development_files("urdf") if file.path.endswith("g1_29dof_with_hand_rev_1_0.urdf"))
 
 
+@pytest.mark.full
 @pytest.mark.corpus
 @pytest.mark.parametrize("robot", [HUMANOID], ids=_id, indirect=True)
 def test_the_humanoid_of_the_demo_keeps_its_actuators_and_its_free_base(robot: Path, tmp_path: Path) -> None:

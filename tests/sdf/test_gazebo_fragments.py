@@ -68,6 +68,7 @@ def test_the_noise_of_an_imu_is_that_of_each_axis(tmp_path: Path) -> None:
     assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.sdf").verdict == "same"
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "fragment", ['<gazebo><plugin name="{0}" filename="p.so"/></gazebo>', IMU.replace('name="imu"', 'name="{0}"')], ids=["model", "link"]
 )

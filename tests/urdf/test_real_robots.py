@@ -15,7 +15,7 @@ from hymeko_x.xml.tree import read_numbers
 from tests.urdf.samples import dump, load, tags
 
 
-@pytest.mark.robots("urdf")
+@pytest.mark.robots("urdf", every=2)
 @pytest.mark.unread("HX005", "HX028", "HX040", "HX046")
 def test_a_real_robot_comes_back_without_a_difference(robot: Path) -> None:
     source = robot.read_bytes()
@@ -26,14 +26,14 @@ def test_a_real_robot_comes_back_without_a_difference(robot: Path) -> None:
     assert dump(load(text)) == text
 
 
-@pytest.mark.robots("urdf")
+@pytest.mark.robots("urdf", every=2)
 @pytest.mark.unread("HX005", "HX028", "HX040", "HX046")
 def test_every_tag_and_attribute_of_a_real_robot_is_there(robot: Path) -> None:
     source = robot.read_bytes()
     assert tags(source) - tags(dump(load(source))) == Counter()
 
 
-@pytest.mark.robots("urdf")
+@pytest.mark.robots("urdf", every=2)
 @pytest.mark.unread("HX005", "HX028", "HX040", "HX046")
 def test_every_value_of_a_real_robot_is_there_to_the_last_digit(robot: Path) -> None:
     source = robot.read_bytes()
@@ -51,7 +51,7 @@ def values(data: bytes) -> Counter[tuple[str, str | tuple[float, ...]]]:
     return found
 
 
-@pytest.mark.robots("urdf")
+@pytest.mark.robots("urdf", every=2)
 @pytest.mark.unread("HX005", "HX028", "HX040", "HX046")
 def test_pinocchio_sees_the_same_robot(robot: Path) -> None:
     source, result = (pin.buildModelFromXML(text) for text in (robot.read_text(), dump(load(robot.read_bytes()))))

@@ -165,6 +165,7 @@ def test_groups_of_some_colliders_of_a_body_are_kept_and_said(tmp_path: Path) ->
     assert groups_of(opened(written(mechanism), tmp_path)) == {"/r/g": ["/r/g"]}
 
 
+@pytest.mark.full
 @pytest.mark.unread("HX104")
 def test_groups_of_thousands_of_bodies_are_kept_and_said(tmp_path: Path) -> None:
     names = [f"b{number}" for number in range(2_000)]

@@ -312,6 +312,7 @@ def test_subsets_of_what_is_not_there_are_carried(format: str) -> None:
 PANDA = [file for file in development_files("urdf") if file.path.endswith("panda_bullet/panda.urdf")]
 
 
+@pytest.mark.full
 @pytest.mark.corpus
 @pytest.mark.parametrize("robot", PANDA, ids=lambda file: file.id, indirect=True)
 def test_a_real_robot_has_one_mesh_for_each_file(robot: Path, tmp_path: Path) -> None:

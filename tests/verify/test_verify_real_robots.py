@@ -19,7 +19,7 @@ FEW = [
     file for file in URDFS if file.path.endswith(("/hand.urdf", "double_pendulum.urdf", "cartpole.urdf", "r2d2.urdf", "al5d_robot.urdf"))
 ]
 
-MORE = [file for file in URDFS if file not in FEW][::6]
+MORE = [file for file in URDFS if file not in FEW][::12]
 
 pytestmark = pytest.mark.corpus
 
@@ -52,7 +52,7 @@ def test_every_real_robot_is_the_same_in_mjcf(robot: Path, tmp_path: Path) -> No
 
 
 @pytest.mark.slow
-@pytest.mark.robots("mjcf", every=3)
+@pytest.mark.robots("mjcf", every=9)
 def test_a_real_mjcf_is_the_same_as_itself(robot: Path) -> None:
     assert hx.verify(robot, robot, samples=2, meshes=False).is_same
 
@@ -63,7 +63,7 @@ def test_a_real_stage_is_the_same_as_itself(robot: Path) -> None:
     assert hx.verify(robot, robot, samples=2, meshes=False).is_same
 
 
-@pytest.mark.robots("urdf")
+@pytest.mark.robots("urdf", every=3)
 def test_yourdfpys_own_kinematics_agree(robot: Path) -> None:
     """Its scene graph, not its numbers: wherever axes have unit length, which it does not see to itself."""
     model = model_of(robot)

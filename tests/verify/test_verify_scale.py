@@ -6,6 +6,7 @@ import tracemalloc
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pytest
 
 from hymeko_x.verify.checks import compare
 from hymeko_x.verify.model import Body, Dof, Joint, Kind, KinematicModel, world_body
@@ -47,6 +48,7 @@ def test_a_humanoid_of_40_links_takes_less_than_half_a_second() -> None:
     assert_within(0.5, comparing(humanoid, 100))
 
 
+@pytest.mark.full
 def test_time_is_linear_in_links() -> None:
     """Ten times the links take about ten times as long; dynamics are left to smaller robots."""
     small, large = robot(limbs=4, length=150), robot(limbs=40, length=150)

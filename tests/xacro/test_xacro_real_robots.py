@@ -82,14 +82,14 @@ def members(text: bytes) -> list[object]:
     return [sorted(root.items()), *(of(element) for element in root.iterchildren("*"))]
 
 
-@pytest.mark.robots("xacro")
+@pytest.mark.robots("xacro", every=3)
 @pytest.mark.unread("HX052")
 def test_a_real_robot_expands_as_xacro_itself_does(robot: Path, corpus_root: Path) -> None:
     library = Library(corpus_root / "corpus" / robot.relative_to(corpus_root / "corpus").parts[0])
     assert canonical(expand(disk.open_source(str(robot)), Report()).text) == canonical(library.expand(robot))
 
 
-@pytest.mark.robots("xacro")
+@pytest.mark.robots("xacro", every=3)
 @pytest.mark.unread("HX052")
 def test_the_urdf_of_a_real_robot_is_its_expansion(robot: Path) -> None:
     """Element for element, as far as URDF has a meaning: the URDF backend has one order for what is in a link or joint."""
@@ -99,7 +99,7 @@ def test_the_urdf_of_a_real_robot_is_its_expansion(robot: Path) -> None:
     assert members(urdf.write(mechanism, Options(), Report()).main) == members(expand(source, Report()).text)
 
 
-@pytest.mark.robots("xacro")
+@pytest.mark.robots("xacro", every=3)
 @pytest.mark.unread("HX052", "HX103", "HX201")
 def test_a_real_robot_converts_to_hymeko_urdf_and_mjcf(robot: Path) -> None:
     source = disk.open_source(str(robot))
@@ -121,6 +121,7 @@ def test_every_element_of_a_real_robot_stands_where_its_file_says(robot: Path) -
             assert f"<{'link' if key.kind == 'body' else 'joint'}" in line, (key, origin)
 
 
+@pytest.mark.full
 @pytest.mark.corpus
 def test_every_xacro_file_of_rtb_data_whose_packages_are_there_expands(real_robot: RealRobots) -> None:
     """The catalogue's package with the most xacro files: 36 robots, 21 libraries of macros and fragments, 3 incomplete ones."""

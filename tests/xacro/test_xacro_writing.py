@@ -157,13 +157,13 @@ def test_the_ledger_of_a_conversion_to_xacro_is_empty(declared: str) -> None:
     assert pipeline.convert(mechanism, formats.by_name("xacro"), Options(), Source("", b"").files, Report()).losses == ()
 
 
-@pytest.mark.robots("urdf")
+@pytest.mark.robots("urdf", every=4)
 @pytest.mark.unread("HX005", "HX028", "HX040", "HX046")
 def test_the_xacro_of_a_real_robot_expands_to_its_urdf(robot: Path) -> None:
     check(load(robot.read_bytes()))
 
 
-@pytest.mark.robots("xacro")
+@pytest.mark.robots("xacro", every=3)
 @pytest.mark.unread("HX052")
 def test_xacro_through_a_mechanism_and_back_is_the_expansion_of_the_source(robot: Path) -> None:
     source = disk.open_source(str(robot))
@@ -172,7 +172,7 @@ def test_xacro_through_a_mechanism_and_back_is_the_expansion_of_the_source(robot
     assert diff(mechanism, read(Source("again.xacro", text.encode()), Report()).mechanism) == ()
 
 
-@pytest.mark.robots("xacro")
+@pytest.mark.robots("xacro", every=3)
 @pytest.mark.unread("HX052")
 def test_macros_in_a_file_of_their_own_expand_to_the_same(robot: Path, tmp_path: Path) -> None:
     source = disk.open_source(str(robot))
