@@ -2,7 +2,8 @@
 
 Works on any tree of tags and texts, so that one pass serves every backend. A backend
 
-1. hands in its own text as forms (:class:`~hymeko_x.factor.forms.Element`: tag, leaves, children) and a :class:`Dialect`:
+1. hands in its own text as forms (:class:`~hymeko_x.factor.forms.Element`: tag, leaves, children) and a
+   :class:`~hymeko_x.factor.forms.Dialect`:
    the costs of definitions, calls and holes in its text, in characters;
 2. gets back :class:`~hymeko_x.factor.forms.Factored`: macros with parameters and defaults, named values, and the items with calls
    among them. ``expand(factor(forms, dialect)) == forms``, to the last digit of every number;
@@ -20,38 +21,3 @@ Works on any tree of tags and texts, so that one pass serves every backend. A ba
 A text is cut into numbers, words and separators; a hole takes whole pieces. Where numbers differ by their sign alone, and
 the same signs change in several places, the sign becomes a parameter ("1" or "-1"; :class:`~hymeko_x.factor.forms.Signed`).
 """
-
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
-from hymeko_x.collector import uncollected
-from hymeko_x.factor.find import families
-from hymeko_x.factor.finish import finish, name_texts
-from hymeko_x.factor.flat import Flat, Workspace, to_forms
-from hymeko_x.factor.forms import Dialect
-from hymeko_x.factor.macros import apply
-from hymeko_x.factor.wrappers import tidy
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from hymeko_x.factor.forms import Element, Factored
-
-__all__ = ["Dialect", "factor"]
-
-_MOST_ROUNDS = 12
-"""Each round looks at the result of the one before, so that macros come to call macros; real robots need three to five."""
-
-
-def factor(forms: Iterable[Element], dialect: Dialect) -> Factored:
-    """The forms with macros for everything that repeats and is shorter so. Deterministic and near-linear in their number."""
-    with uncollected():
-        workspace = Workspace(to_forms(forms))
-        for _ in range(_MOST_ROUNDS):
-            flat = Flat(workspace, dialect)
-            if not apply(families(flat, dialect), flat, workspace, dialect):
-                break
-        tidy(workspace, dialect)
-        done = finish(workspace, dialect)
-        return name_texts(done, dialect) if dialect.values else done

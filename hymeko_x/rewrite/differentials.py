@@ -49,7 +49,7 @@ def drive_by_differentials(mechanism: Mechanism, context: Context) -> Mechanism:
     found = [*_differentials(mechanism)]
     if not found:
         return mechanism
-    carried = loads(mechanism)
+    carried = loads(mechanism) if any(one.kind == "position" for one in found) else {}
     names = names_in_use(mechanism)
     vertices: dict[Id, Actuator] = {}
     edges: dict[Id, RobotEdge] = {}

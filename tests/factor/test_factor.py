@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from hymeko_x.factor import Dialect, factor
-from hymeko_x.factor.forms import Call, Element, Factored, Hole, Macro, Parameter, Signed, Value, expand
+from hymeko_x.factor.forms import Call, Dialect, Element, Factored, Hole, Macro, Parameter, Signed, Value, expand
+from hymeko_x.factor.rounds import factor
 
 DIALECT = Dialect(macro=10, call=3, argument=2, least=1)
 

@@ -9,8 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from hymeko_x.factor import Dialect, factor
-from hymeko_x.factor.forms import Call, Element, Factored, Hole, Item, Macro, Parameter, Piece, Signed, Text, expand
+from hymeko_x.factor.forms import Call, Dialect, Element, Factored, Hole, Item, Macro, Parameter, Piece, Signed, Text, expand
+from hymeko_x.factor.rounds import factor
 from tests.pace import assert_at_most
 
 if TYPE_CHECKING:

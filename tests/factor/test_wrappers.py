@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from hymeko_x.factor import Dialect, factor
 from hymeko_x.factor.flat import Form, OpenMacro, Workspace
-from hymeko_x.factor.forms import Element, Hole, expand
+from hymeko_x.factor.forms import Dialect, Element, Hole, expand
+from hymeko_x.factor.rounds import factor
 from hymeko_x.factor.words import limb_of_most
 from hymeko_x.factor.wrappers import tidy
 

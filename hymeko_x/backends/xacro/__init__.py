@@ -13,7 +13,7 @@ from hymeko_x.backends.urdf.document import document, residue_elements
 from hymeko_x.backends.xacro.elements import DIALECT, top_level
 from hymeko_x.backends.xacro.printing import print_file, print_macros
 from hymeko_x.backends.xacro.remarks import placed
-from hymeko_x.factor import factor
+from hymeko_x.factor.rounds import factor
 from hymeko_x.formats.xacro import macros_file
 from hymeko_x.source import Package
 

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 from xml.parsers import expat
 
 from hymeko_x.backends.xacro.spelling import CONSTANTS
-from hymeko_x.factor import Dialect
-from hymeko_x.factor.forms import Element
+from hymeko_x.factor.forms import Dialect, Element
 from hymeko_x.formats.xacro import PREFIX, TAKEN, survives
 from hymeko_x.xml.text import unescaped
 
