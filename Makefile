@@ -10,7 +10,7 @@ JOBS ?= 2
 help:
 	@echo "make demo   install into .venv, convert a real humanoid, show the result"
 	@echo "make test   ruff, mypy --strict, pytest"
-	@echo "make test-full  the same with the tests that take minutes, about an hour in all: large sizes, more robots"
+	@echo "make test-full  the same with the tests that take minutes, one to two hours in all: large sizes, more robots"
 	@echo "make test-hours  what these leave out: every robot in every format, twenty edits of each"
 	@echo "make test-format FORMAT=urdf  what belongs to one format, without real robots"
 	@echo "make coverage  which lines no test runs; writes docs/coverage.md"
