@@ -46,8 +46,7 @@ Judge = Callable[["Difference"], bool]
 
 def in_fragments(found: Collection[Difference], before: Mechanism, after: Mechanism) -> Judge:
     """Whether one of the differences found is in fragments of one of the robots, which only some programs read."""
-    sources = (before.source.format, after.source.format) if found else ()
-    judges = [formats.loaded(row.held)(before, after) for row in formats.FORMATS if row.held is not None and row.name in sources]
+    judges = [formats.loaded(row.held)(before, after) for row in formats.FORMATS if found and row.held is not None]
     return lambda difference: any(judge(difference) for judge in judges)
 
 

@@ -7,6 +7,10 @@ from pathlib import Path
 import pytest
 
 import hymeko_x as hx
+from hymeko_x import formats, pipeline
+from hymeko_x.diagnostics import Report
+from hymeko_x.rewrite import Options
+from hymeko_x.source import NoFiles
 from tests.sdf.samples import AXIS, INERTIAL, model
 from tests.sdf.test_fragments_written import BOX, EVERYTHING
 
@@ -51,6 +55,15 @@ def test_what_urdf_holds_in_fragments_is_kept_or_no_loss(text: str, kept: list[t
     """Other programs lack loops, springs and friction; all else is for Gazebo alone."""
     assert lost(text, "sdf", target, tmp_path) == []
     assert sorted(lost(text, "sdf", target, tmp_path, kept=True)) == sorted(kept)
+
+
+def test_what_urdf_holds_in_fragments_is_no_loss_of_a_robot_with_a_part_from_mjcf() -> None:
+    """The robot has no one format that it is from; its elements of SDF are as they were."""
+    hand = hx.loads('<mujoco><worldbody><body name="hand"><geom type="box" size="1 1 1"/></body></worldbody></mujoco>', "mjcf")
+    robot = hx.loads(model(SPRING), "sdf").attach(hand, at="b", prefix="h_")
+    losses = pipeline.convert(robot.mechanism, formats.URDF, Options(), NoFiles(), Report()).losses
+    assert losses is not None
+    assert [(loss.element, loss.field) for loss in losses if loss.fate == "kept"] == KEPT
 
 
 def test_a_value_that_the_collisions_of_a_link_do_not_share_is_lost(tmp_path: Path) -> None:
