@@ -22,6 +22,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.rewrite import Options
 from hymeko_x.source import Files, Package, PlacedFiles, Source
+from tests.turns import cases
 
 CHANGES = ("os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.chmod", "os.link", "os.symlink", "os.truncate")
 """What Python announces before it changes the disk; files that are opened for writing come on top."""
@@ -189,9 +190,7 @@ LATER = ("urdf with points of its own", "mjcf from mjcf", "usda", "hymeko", "xac
 """Ways whose deaths are like those of others: they have their turn in `make test-full`."""
 
 
-@pytest.mark.parametrize(
-    "way", [pytest.param(way, id=name, marks=[pytest.mark.full] if name in LATER else []) for name, way in WAYS.items()]
-)
+@pytest.mark.parametrize("way", cases(WAYS, LATER))
 def test_killed_before_any_change_the_output_is_the_old_one_or_the_new_one(way: Way, tmp_path: Path) -> None:
     found = list(states(way, tmp_path))
     old, new = found[0][0], found[-1][0]

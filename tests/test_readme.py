@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from hymeko_x.corpus import catalog
+from tests.turns import cases
 
 if TYPE_CHECKING:
     from tests.conftest import RealRobots
@@ -61,9 +62,7 @@ LONG = ("dynamics.md",)
 """Pages whose commands take half a minute: they have their turn in `make test-full`."""
 
 
-@pytest.mark.parametrize(
-    "page", [pytest.param(page, id=page.name, marks=[pytest.mark.full] if page.name in LONG else []) for page in PAGES]
-)
+@pytest.mark.parametrize("page", cases({page.name: page for page in PAGES}, LONG))
 def test_the_session_in_a_page_is_what_really_happens(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = page.read_text("utf-8")
     assert session(text, tmp_path) == text

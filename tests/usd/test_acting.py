@@ -17,6 +17,7 @@ from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Actuator, Contact, Drive, Light
 from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
+from tests.turns import cases
 from tests.usd.stages import opened, read_text
 from tests.usd.test_kept import missing
 from tests.usd.test_read import ENDS, PLACE, body, joint, robot
@@ -136,17 +137,13 @@ def test_what_a_class_says_of_an_actuator_is_in_a_stage_without_residue(tmp_path
     assert other_laws(source, tmp_path) == []
 
 
-LATER = ("adroit_hammer.xml", "panda_free_base.xml")
-FEW = ("rodent.xml", "manipulator.xml", *LATER)
-REAL = [
-    pytest.param(file, id=file.id, marks=[pytest.mark.full] if Path(file.path).name in LATER else [])
-    for file in catalog.development_files("mjcf")
-    if Path(file.path).name in FEW
-]
+FEW = ("rodent.xml", "adroit_hammer.xml", "panda_free_base.xml", "manipulator.xml")
+REAL = {file.id: file for file in catalog.development_files("mjcf") if Path(file.path).name in FEW}
+LATER = ("gymnasium_robotics/adroit_hammer.xml", "genesis_world/panda_free_base.xml")
 
 
 @pytest.mark.corpus
-@pytest.mark.parametrize("robot", REAL, indirect=True)
+@pytest.mark.parametrize("robot", cases(REAL, LATER), indirect=True)
 def test_actuators_of_a_real_robot_drive_alike_in_a_stage_without_residue(robot: Path, tmp_path: Path) -> None:
     assert other_laws(robot, tmp_path) == []
 

@@ -261,8 +261,7 @@ def _elements(root: Tag) -> list[Tag]:
     while stack:
         tag = stack.pop()
         found.append(tag)
-        if tag.children:
-            stack += [child for child in reversed(tag.children) if isinstance(child, Tag)]
+        stack += [child for child in reversed(tag.children) if isinstance(child, Tag)]
     return found
 
 
