@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pxr import Sdf, Usd
+from pxr import Sdf, Usd, UsdGeom
 
 from hymeko_x import formats, pipeline
 from hymeko_x.compare.diff import diff
@@ -121,6 +121,20 @@ def test_groups_without_a_type_and_the_group_that_stands_for_the_world(tmp_path:
         body("a"),
     )
     assert missing(text, tmp_path) == {}
+
+
+@pytest.mark.parametrize("outer", ["", PLACE.format(x=1, y=0, z=0)])
+@pytest.mark.parametrize("group", ["", PLACE.format(x=0, y=2, z=0)])
+def test_a_group_of_joints_alone_stays_where_it_is(outer: str, group: str, tmp_path: Path) -> None:
+    marker = f'def Xform "marker"\n{{\n    custom int number = 3\n{PLACE.format(x=0, y=0, z=4)}}}\n'
+    ends = ENDS.replace("/robot", "/robot/cell")
+    joints = f'def Xform "joints"\n{{\n{group}{joint("PhysicsFixedJoint", "j", ends)}{marker}}}\n'
+    text = robot(f'def Xform "cell"\n{{\n{outer}', body("a"), body("b"), joints, "}\n")
+    before, after = opened(text.encode(), tmp_path, "source.usda"), opened(written(read_text(text)), tmp_path)
+    for path in ("joints", "joints/marker", "a"):
+        poses = [UsdGeom.XformCache().GetLocalToWorldTransform(stage.GetPrimAtPath(f"/robot/cell/{path}")) for stage in (before, after)]
+        assert poses[0] == poses[1] or (path, group) == ("joints", "")
+    assert [str(item) for item in diff(read_text(text), again(read_text(text)))] == []
 
 
 def test_how_far_the_bounds_of_a_locked_axis_are_crossed(tmp_path: Path) -> None:

@@ -18,6 +18,8 @@ from hymeko_x.frontends.usd.transforms import decomposed, matrix_of
 from hymeko_x.ir.mechanism import ROOT, Extra
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
@@ -28,6 +30,8 @@ _STAGE_KNOWN = ("upAxis", "metersPerUnit", "kilogramsPerUnit", "defaultPrim", "s
 _TARGETS = (("connectionPaths", "connectionPathList"), ("targetPaths", "targetPathList"))
 """What attributes and what relationships lead to."""
 _ARCS = ("references", "payload", "inheritPaths", "specializes", "variantSetNames", "variantSelection")
+_PLACED = {"body", "shape", "mount"}
+"""The kinds of elements that have a pose of their own prim; the frames of joints are relative to bodies."""
 _COMPOSED = ("specifier", "typeName", "apiSchemas", "instanceable", *_ARCS)
 
 
@@ -37,7 +41,7 @@ def gather_extras(builder: UsdBuilder) -> None:
     _turn_gravity(builder)
     scratch = Sdf.Layer.CreateAnonymous(".usda")
     _gather_stage(layer, builder)
-    folded = _above_typed(builder)
+    folded = _Folded(_above(builder.elements), _above(path for path, found in builder.elements.items() if _is_placed(found)))
     owners: dict[Prim | None, tuple[Id, str] | None] = {None: (ROOT, "/")}
     for prim in builder.scene.prims.values():
         above = owners[prim.parent]
@@ -53,6 +57,13 @@ def _home(key: Id, path: str, builder: UsdBuilder) -> str:
     """The prim from which the extras of an element are counted: the first one where it was made of several."""
     paths = builder.noted(key, words.PATH) or ()
     return paths[0] if len(paths) > 1 else path
+
+
+class _Folded(Struct, frozen=True):
+    """Paths of prims above typed ones: all of them, and those whose transformations are part of the pose of an element below."""
+
+    groups: set[str]
+    places: set[str]
 
 
 class _Unread(Struct, frozen=True):
@@ -71,12 +82,12 @@ class _Unread(Struct, frozen=True):
         return bool(self.schemas or self.metadata or self.properties) or is_moved
 
 
-def _gather_prim(prim: Prim, owner: tuple[Id, str], folded: set[str], scratch: Any, builder: UsdBuilder) -> None:
+def _gather_prim(prim: Prim, owner: tuple[Id, str], folded: _Folded, scratch: Any, builder: UsdBuilder) -> None:
     if "@spec" in builder.read_names.get(prim.path, ()):
         return
     is_typed = prim.path in builder.elements
     unread = _unread_of(prim, owner[0] if is_typed else None, None if is_typed else _new_place(prim, folded, builder), builder)
-    has_own_type = unread.has_type and (is_typed or prim.kind != "Xform" or prim.path not in folded)
+    has_own_type = unread.has_type and (is_typed or prim.kind != "Xform" or prim.path not in folded.groups)
     if unread.is_any or has_own_type or not (is_typed or prim.kind):
         relative = str(Sdf.Path(prim.path).MakeRelativePath(Sdf.Path(owner[1]))) if prim.path != owner[1] else ""
         is_over = is_typed or "@type" in builder.read_names.get(prim.path, ())
@@ -149,10 +160,14 @@ def _gather_stage(layer: Any, builder: UsdBuilder) -> None:
 # ---- places of prims that are not typed ------------------------------------------------------------------------------------------
 
 
-def _above_typed(builder: UsdBuilder) -> set[str]:
-    """The paths of all prims with a typed descendant: their transformations are part of its pose."""
+def _is_placed(elements: list[Id]) -> bool:
+    return any(key.kind in _PLACED for key in elements)
+
+
+def _above(paths: Iterable[str]) -> set[str]:
+    """The paths of all prims above these."""
     above: set[str] = set()
-    for path in builder.elements:
+    for path in paths:
         way = path.rpartition("/")[0]
         while way and way not in above:
             above.add(way)
@@ -160,16 +175,16 @@ def _above_typed(builder: UsdBuilder) -> set[str]:
     return above
 
 
-def _new_place(prim: Prim, folded: set[str], builder: UsdBuilder) -> Any | None:
+def _new_place(prim: Prim, folded: _Folded, builder: UsdBuilder) -> Any | None:
     """The matrix of a prim in the frame in which it will be written, or None where its own one stays true.
 
-    Groups above typed prims are in the frame of their body or the world; an untyped child of such a group gets its
-    own matrix there; descendants of that keep their own.
+    Groups above elements with a pose are in the frame of their body or the world; any other child of such a group gets
+    its own matrix there; descendants of that keep their own.
     """
-    if prim.path in folded:
+    if _is_without_place(prim, folded):
         return Gf.Matrix4d(1)
     parent = prim.parent
-    is_top = parent is None or parent.path in folded or parent.path in builder.elements
+    is_top = parent is None or _is_without_place(parent, folded) or parent.path in builder.elements
     composed = prim.composed if is_top else None
     if not composed or not UsdGeom.Xformable(composed) or (parent is not None and _is_skin(parent, builder)):
         return None
@@ -183,6 +198,13 @@ def _new_place(prim: Prim, folded: set[str], builder: UsdBuilder) -> Any | None:
 def _is_skin(prim: Prim, builder: UsdBuilder) -> bool:
     """Whether the prim is a body and its geometry at once: it keeps its scale, so its children keep their poses."""
     return {"body", "shape"} <= {key.kind for key in builder.elements.get(prim.path, ())}
+
+
+def _is_without_place(prim: Prim, folded: _Folded) -> bool:
+    """Whether a group above typed prims is written without a matrix: it moves nothing, or an element below has its pose."""
+    if prim.path in folded.places:
+        return True
+    return prim.path in folded.groups and (not UsdGeom.Xformable(prim.composed) or _own_matrix(prim.composed) == Gf.Matrix4d(1))
 
 
 def _own_matrix(composed: Any) -> Any:
