@@ -66,8 +66,6 @@ class Group(Struct, frozen=True, eq=False):
     """Attributes that make one value. Each is equal to itself alone.
 
     ``needs``: attributes of other groups on which their meaning depends. ``exact``: what is written always means the same.
-    ``repeats``: whether what is written of a value surely means the same as the attributes that it was read from, without a class;
-    it spares writing poses and inertials to find out, which is 4 % of a conversion.
     """
 
     key: str
@@ -77,7 +75,6 @@ class Group(Struct, frozen=True, eq=False):
     seen: Callable[[Mapping[str, str], Settings], Any]
     needs: tuple[str, ...] = ()
     exact: bool = False
-    repeats: Callable[[Any, Mapping[str, str]], bool] | None = None
 
 
 REFUSED = object()
@@ -274,10 +271,7 @@ def seen_pose(attributes: Mapping[str, str], settings: Settings) -> Any:
     return read_numbers(attributes.get("pos", "0 0 0")), turn if any(turn) else ((1.0, 0.0, 0.0, 0.0), *[None] * 4)
 
 
-_OTHER_TURNS = ANY_TURN - {"quat"}
-"""Orientations of which not the numbers themselves are written again."""
-
-POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose, repeats=lambda value, attributes: _OTHER_TURNS.isdisjoint(attributes))
+POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose)
 SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose_or_ends, seen_pose)
 
 

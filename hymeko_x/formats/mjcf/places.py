@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 from msgspec.structs import replace
 
-from hymeko_x.formats.mjcf.classes import ANY_TURN, TURNS
+from hymeko_x.formats.mjcf.classes import TURNS
 from hymeko_x.formats.mjcf.codec import (
     POSE,
     POSE_NAMES,
@@ -236,7 +236,7 @@ def seen_from(group: Group, frame: Pose) -> Group:
     def write(value: Any, settings: Settings) -> dict[str, str]:
         return group.write(_moved(inverse(frame), value), settings)
 
-    return replace(group, read=read, write=write, repeats=None)
+    return replace(group, read=read, write=write)
 
 
 def _moved(frame: Pose, value: Any) -> Any:
@@ -358,11 +358,6 @@ def _write_inertial(value: Inertial, settings: Settings) -> dict[str, str]:
     return {**attributes, "fullinertia": numbers_text(value.tensor)}
 
 
-def _repeats_inertial(value: Inertial, attributes: Mapping[str, str]) -> bool:
-    """Not where MuJoCo turns the tensor, or finds the axes of six numbers of which three would be written."""
-    return ANY_TURN.isdisjoint(attributes) and ("fullinertia" not in attributes or any(value.tensor[3:]))  # type: ignore[index]
-
-
 _INERTIAL_NAMES = ("pos", "mass", "diaginertia", "fullinertia", *TURNS)
 INERTIAL = Group(
     "inertial",
@@ -370,7 +365,6 @@ INERTIAL = Group(
     _read_inertial,
     _write_inertial,
     lambda attributes, settings: (plain(attributes, ("mass", "diaginertia", "fullinertia")), seen_pose(attributes, settings)),
-    repeats=_repeats_inertial,
 )
 
 MATERIAL = (

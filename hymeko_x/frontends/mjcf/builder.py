@@ -136,8 +136,6 @@ class MjcfBuilder(Builder):
 
     def _is_written_again(self, group: Group, value: Any, base: Mapping[str, str], own: Mapping[str, str]) -> bool:
         """Whether printing a value gives attributes of the same meaning as those that it was read from."""
-        if group.repeats is not None and base.keys().isdisjoint(group.names) and group.repeats(value, own):
-            return True
         written = group.write(value, self.settings)
         for name in group.names:
             if not _are_same_numbers(written.get(name), own.get(name)):
