@@ -30,9 +30,9 @@ _STAGE_KNOWN = ("upAxis", "metersPerUnit", "kilogramsPerUnit", "defaultPrim", "s
 _TARGETS = (("connectionPaths", "connectionPathList"), ("targetPaths", "targetPathList"))
 """What attributes and what relationships lead to."""
 _ARCS = ("references", "payload", "inheritPaths", "specializes", "variantSetNames", "variantSelection")
+_COMPOSED = ("specifier", "typeName", "apiSchemas", "instanceable", *_ARCS)
 _PLACED = {"body", "shape", "mount"}
 """The kinds of elements that have a pose of their own prim; the frames of joints are relative to bodies."""
-_COMPOSED = ("specifier", "typeName", "apiSchemas", "instanceable", *_ARCS)
 
 
 def gather_extras(builder: UsdBuilder) -> None:
@@ -41,7 +41,7 @@ def gather_extras(builder: UsdBuilder) -> None:
     _turn_gravity(builder)
     scratch = Sdf.Layer.CreateAnonymous(".usda")
     _gather_stage(layer, builder)
-    folded = _Folded(_above(builder.elements), _above(path for path, found in builder.elements.items() if _is_placed(found)))
+    folded = _folded(builder)
     owners: dict[Prim | None, tuple[Id, str] | None] = {None: (ROOT, "/")}
     for prim in builder.scene.prims.values():
         above = owners[prim.parent]
@@ -60,10 +60,13 @@ def _home(key: Id, path: str, builder: UsdBuilder) -> str:
 
 
 class _Folded(Struct, frozen=True):
-    """Paths of prims above typed ones: all of them, and those whose transformations are part of the pose of an element below."""
+    """Paths of the ``groups`` above typed prims, and of the ``still`` ones among them, which are written without a matrix.
+
+    Such a group moves nothing, or its transformation is part of the pose of an element below.
+    """
 
     groups: set[str]
-    places: set[str]
+    still: set[str]
 
 
 class _Unread(Struct, frozen=True):
@@ -160,8 +163,10 @@ def _gather_stage(layer: Any, builder: UsdBuilder) -> None:
 # ---- places of prims that are not typed ------------------------------------------------------------------------------------------
 
 
-def _is_placed(elements: list[Id]) -> bool:
-    return any(key.kind in _PLACED for key in elements)
+def _folded(builder: UsdBuilder) -> _Folded:
+    groups = _above(builder.elements)
+    placed = _above(path for path, found in builder.elements.items() if any(key.kind in _PLACED for key in found))
+    return _Folded(groups, placed | {path for path in groups - placed if _moves_nothing(builder.prim_at(path))})
 
 
 def _above(paths: Iterable[str]) -> set[str]:
@@ -181,10 +186,10 @@ def _new_place(prim: Prim, folded: _Folded, builder: UsdBuilder) -> Any | None:
     Groups above elements with a pose are in the frame of their body or the world; any other child of such a group gets
     its own matrix there; descendants of that keep their own.
     """
-    if _is_without_place(prim, folded):
+    if prim.path in folded.still:
         return Gf.Matrix4d(1)
     parent = prim.parent
-    is_top = parent is None or _is_without_place(parent, folded) or parent.path in builder.elements
+    is_top = parent is None or parent.path in folded.still or parent.path in builder.elements
     composed = prim.composed if is_top else None
     if not composed or not UsdGeom.Xformable(composed) or (parent is not None and _is_skin(parent, builder)):
         return None
@@ -200,11 +205,8 @@ def _is_skin(prim: Prim, builder: UsdBuilder) -> bool:
     return {"body", "shape"} <= {key.kind for key in builder.elements.get(prim.path, ())}
 
 
-def _is_without_place(prim: Prim, folded: _Folded) -> bool:
-    """Whether a group above typed prims is written without a matrix: it moves nothing, or an element below has its pose."""
-    if prim.path in folded.places:
-        return True
-    return prim.path in folded.groups and (not UsdGeom.Xformable(prim.composed) or _own_matrix(prim.composed) == Gf.Matrix4d(1))
+def _moves_nothing(group: Prim) -> bool:
+    return not UsdGeom.Xformable(group.composed) or _own_matrix(group.composed) == Gf.Matrix4d(1)
 
 
 def _own_matrix(composed: Any) -> Any:
