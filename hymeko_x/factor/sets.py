@@ -72,7 +72,7 @@ def share(rows: Sequence[Row], costs: Costs) -> list[Shared]:
 def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], list[int]] | None:
     """The set that saves most, and the places of the rows that have all of it."""
     owners = _owners(rows)
-    if _most_saved(rows, owners, costs, use) < costs.least:
+    if not _may_save(rows, owners, costs, use):
         return None
     best, most = None, costs.least - 1
     for pairs, members in _ranked(rows, owners):
@@ -83,10 +83,11 @@ def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], lis
     return None if best is None else (best[0], sorted(best[1]))
 
 
-def _most_saved(rows: list[Row], owners: Mapping[Pair, Members], costs: Costs, use: int) -> int:
-    """No set saves more than this: all fields of a row, each written once instead of every time, and two rows that name the set."""
+def _may_save(rows: list[Row], owners: Mapping[Pair, Members], costs: Costs, use: int) -> bool:
+    """Whether the fields of a row, each written once instead of every time, save enough for a definition and for two rows that name it."""
+    least = costs.least + costs.definition + 2 * use
     saved = {pair: (len(members) - 1) * (len(pair[0]) + len(pair[1]) + costs.field) for pair, members in owners.items()}
-    return max([sum([saved.get(pair, 0) for pair in row]) for row in rows]) - 2 * use - costs.definition
+    return sum(saved.values()) >= least and max([sum([saved.get(pair, 0) for pair in row]) for row in rows]) >= least
 
 
 def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:
@@ -109,7 +110,8 @@ def _ranked(rows: Sequence[Row], owners: Mapping[Pair, Members]) -> list[tuple[f
         ranked = nsmallest(8 * _SEEDS, sharing, key=lambda members: (-_worth(members, sharing[members]), sorted(sharing[members])))
     closed = {members: common(members) for members in ranked}
     ranks = {members: (-_worth(members, shared), sorted(shared)) for members, shared in closed.items()}
-    for first, second in combinations(sorted(ranks, key=ranks.__getitem__)[:_SEEDS], 2):
+    seeds = [members for members in sorted(ranks, key=ranks.__getitem__)[:_SEEDS] if len(members) > 2]  # of two, no part is shared
+    for first, second in combinations(seeds, 2):
         both = first & second
         if len(both) > 1 and both not in closed:
             shared = closed[both] = common(both)
