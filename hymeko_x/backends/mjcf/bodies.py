@@ -12,7 +12,7 @@ from hymeko_x.backends.mjcf.joints import write_dof
 from hymeko_x.backends.mjcf.mounts import write_mount
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf.codec import POSE
-from hymeko_x.formats.mjcf.notations import CHILDCLASS, frame_of
+from hymeko_x.formats.mjcf.notations import CHILDCLASS
 from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Role
@@ -70,7 +70,7 @@ def _add_inertial(sheet: MjcfSheet, body: BodyTag, inertial: Inertial) -> None:
     if not sheet.from_mjcf:
         inertial = replace(inertial, tensor=inertial.tensor or _NO_TENSOR, written=None)
     notations = sheet.notations(body.key)
-    frame = body.frame(sheet.note(body.key, frame_of("inertial/")))
+    frame = body.frame_of(sheet, body.key, "inertial/")
     groups = _INERTIAL if frame is None else (seen_from(INERTIAL, frame.pose),)
     attributes = sheet.attributes({"inertial": inertial}, groups, {}, notations, {}, "inertial/")
     body.add(Tag("inertial", {**attributes, **sheet.kept_attributes(body.key, "inertial")}), frame)
@@ -82,7 +82,7 @@ def _add_body(sheet: MjcfSheet, outer: BodyTag, key: Id, view: JointView | None)
     if view is not None and view.child_pose != IDENTITY:
         pose = clean_pose(compose(pose, inverse(view.child_pose)))
     notations, kept = sheet.notations(key), sheet.kept_attributes(key)
-    frame = outer.frame(sheet.note(key, frame_of()))
+    frame = outer.frame_of(sheet, key)
     groups = _POSE if frame is None else (seen_from(POSE, frame.pose),)
     childclass = sheet.note(key, CHILDCLASS)
     attributes = {

@@ -8,7 +8,7 @@ from msgspec import Struct, field
 
 from hymeko_x.formats.mjcf.classes import merge
 from hymeko_x.formats.mjcf.codec import POSE, BadAttribute
-from hymeko_x.formats.mjcf.notations import frame
+from hymeko_x.formats.mjcf.notations import frame, frame_of
 from hymeko_x.ir.values import IDENTITY, Pose, compose
 from hymeko_x.xml.printing import Tag
 
@@ -37,9 +37,9 @@ class BodyTag(Struct):
     frames: dict[str, FrameTag]
     opened: list[tuple[str, Tag]] = field(default_factory=list)
 
-    def frame(self, number: str | None) -> FrameTag | None:
-        """The frame of this number, or None."""
-        return self.frames.get(number) if number else None
+    def frame_of(self, sheet: MjcfSheet, key: Id, prefix: str = "") -> FrameTag | None:
+        """The frame that the author put an element into, or None; ``prefix`` as of the element's notations."""
+        return self.frames.get(sheet.note(key, frame_of(prefix)) or "") if self.frames else None
 
     def add(self, tag: Tag, frame: FrameTag | None) -> None:
         """Put an element into the frame; frames are opened and closed where they change, and named when they open first."""

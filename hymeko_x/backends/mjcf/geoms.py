@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf import CLASSES, MAIN
 from hymeko_x.formats.mjcf.notations import GRID as NOTED_GRID
-from hymeko_x.formats.mjcf.notations import attribute, frame_of
+from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, between_its_ends, seen_from
 from hymeko_x.formats.mjcf.roles import role_attributes
 from hymeko_x.ir.graph import Arc
@@ -30,7 +30,7 @@ def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     if isinstance(shape.geometry, NoShape) and not sheet.from_mjcf:
         raise ValueError("a shape without geometry is not legal MJCF")
     notations, kept = sheet.notations(key), sheet.kept_attributes(key)
-    frame = body.frame(sheet.note(key, frame_of()))
+    frame = body.frame_of(sheet, key)
     own_class = sheet.own_class(key) if sheet.from_mjcf else CLASSES.get(shape.role)
     base = sheet.base("geom", own_class, body.childclass if frame is None else frame.childclass)
     fitted = "mesh" in kept or ("mesh" in base and view.mesh is None)

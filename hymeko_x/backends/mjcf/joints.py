@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf.joints import ANCHOR, AXIS, JOINT
-from hymeko_x.formats.mjcf.notations import frame_of, is_joint
+from hymeko_x.formats.mjcf.notations import is_joint
 from hymeko_x.ir.decimals import clean_vector
 from hymeko_x.ir.parts import DofKind
 from hymeko_x.ir.values import IDENTITY, ZERO, Written, Z, apply, inverse, rotate, unit
@@ -32,7 +32,7 @@ def write_dof(sheet: MjcfSheet, body: BodyTag, view: JointView, number: int) -> 
     prefix = str(number + 1) if len(view.joint.dofs) > 1 else ""
     path = f"joint[{prefix}]" if prefix else ""
     notations, kept = sheet.notations(key), sheet.kept_attributes(key, path)
-    frame = body.frame(sheet.note(key, frame_of(prefix)))
+    frame = body.frame_of(sheet, key, prefix)
     name = dof.name if prefix else dof.name or sheet.name(key)
     inside = sheet.inside(key, path)
     if dof.kind is DofKind.FREE and sheet.note(key, is_joint(prefix)) != "joint" and _is_bare(dof):

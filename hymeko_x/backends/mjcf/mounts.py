@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf import LIGHTS
-from hymeko_x.formats.mjcf.notations import frame_of
 from hymeko_x.formats.mjcf.places import CAMERA, LIGHT, SITE, seen_from
 from hymeko_x.ir.parts import Camera, Frame, Light
 
@@ -42,7 +41,7 @@ def _add(
     sheet: MjcfSheet, body: BodyTag, key: Id, tag: str, groups: tuple[Group, ...], values: dict[str, Any], parameters: Parameters
 ) -> None:
     notations, kept = sheet.notations(key), sheet.kept_attributes(key)
-    frame = body.frame(sheet.note(key, frame_of()))
+    frame = body.frame_of(sheet, key)
     own_class = sheet.own_class(key)
     base = sheet.base(tag, own_class, body.childclass if frame is None else frame.childclass)
     if frame is not None:

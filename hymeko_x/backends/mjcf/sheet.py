@@ -14,8 +14,8 @@ from msgspec import Struct, field
 
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import Classes, merge
-from hymeko_x.formats.mjcf.codec import BadAttribute, InheritedValues, Settings, parameter_text, parameter_value, undone
-from hymeko_x.formats.mjcf.places import same_value
+from hymeko_x.formats.mjcf.codec import BadAttribute, Settings, parameter_text, parameter_value, undone
+from hymeko_x.formats.mjcf.inherited import InheritedValues
 from hymeko_x.formats.mjcf.schema import attributes_of, kinds_of
 from hymeko_x.formats.mjcf.tree import COMMENT, parse_text
 from hymeko_x.ir.kinematics import dof_number
@@ -51,6 +51,8 @@ _PLAIN: Mapping[str, str] = {
     "coupling": "equality/joint",
 }
 """The places in the schema of elements of which a number or a word of MJCF stands for itself, by the kinds of elements."""
+_NAMED_APART = frozenset(("mesh", "texture"))
+"""The kinds of elements that have a name beside that of their id."""
 _OF_ROOTS = frozenset(("mocap", "sleep"))
 """The words that only bodies right in the world have."""
 
@@ -71,7 +73,7 @@ class MjcfSheet(Struct):
 
     def name(self, key: Id) -> str | None:
         """The name to print; None for an element of a file in MJCF that its author left unnamed."""
-        part = self.mechanism.graph.vertices.get(key)
+        part = self.mechanism.graph.vertices.get(key) if key.kind in _NAMED_APART else None
         if isinstance(part, Mesh | Texture) and part.name:
             return part.name
         if not self.from_mjcf:
@@ -125,27 +127,24 @@ class MjcfSheet(Struct):
         Of others, as of a hand from MJCF on an arm from URDF, only numbers and words of MJCF, which mean the same without their file.
         """
         found = self.mechanism.extras.get(key, ())
-        if not found or self.from_mjcf or key.kind in ("mesh", "texture"):
+        if not found or self.from_mjcf or key.kind in _NAMED_APART:
             return found
         known = kinds_of(_PLAIN.get(key.kind, "")).keys() - _OF_ROOTS
         return tuple([extra for extra in found if extra.format == words.NAME and extra.path.rpartition("@")[2] in known])
 
     def kept_attributes(self, key: Id, path: str = "") -> dict[str, str]:
         """The attributes that the IR cannot represent, of the element's node at this path."""
-        extras = self.extras(key)
-        if not extras:
+        if key not in self.mechanism.extras:
             return {}
         start = f"{path}/@" if path else "@"
-        return {
-            extra.path.removeprefix(start): extra.text for extra in extras if extra.format == words.NAME and extra.path.startswith(start)
-        }
+        own = [extra for extra in self.extras(key) if extra.format == words.NAME and extra.path.startswith(start)]
+        return {extra.path.removeprefix(start): extra.text for extra in own}
 
     def inside(self, key: Id, path: str = "") -> list[str]:
         """The elements and comments that stand inside an element, as they are."""
-        extras = self.extras(key)
-        if not extras:
+        if key not in self.mechanism.extras:
             return []
-        found = [extra for extra in extras if extra.path == path and extra.format in (words.NAME, "comment")]
+        found = [extra for extra in self.extras(key) if extra.path == path and extra.format in (words.NAME, "comment")]
         return [_line_of(extra) for extra in sorted(found, key=lambda extra: extra.index)]
 
     # ---- attributes --------------------------------------------------------------------------------------------------------
@@ -170,7 +169,7 @@ class MjcfSheet(Struct):
             noted = _chosen(written, group.names) if written else None
             if noted and self._means(group, merge(below, noted), value):
                 found |= noted
-            elif not (self._means(group, below, value) if context else value is inherited or same_value(inherited, value)):
+            elif not (self._means(group, below, value) if context else group.same(inherited, value)):
                 texts = group.write(value, self.settings)
                 for name, text in ({**texts, **undone(group, base, texts)} if base else texts).items():
                     if base.get(name) != text:
@@ -179,7 +178,7 @@ class MjcfSheet(Struct):
 
     def _means(self, group: Group, attributes: Mapping[str, str], value: Any) -> bool:
         try:
-            return same_value(group.read(attributes, self.settings), value)
+            return group.same(group.read(attributes, self.settings), value)
         except BadAttribute:
             return False
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from operator import eq
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -66,6 +67,7 @@ class Group(Struct, frozen=True, eq=False):
     """Attributes that make one value. Each is equal to itself alone.
 
     ``needs``: attributes of other groups on which their meaning depends. ``exact``: what is written always means the same.
+    ``same``: whether two values are equal, and written in the same way where that is noted.
     """
 
     key: str
@@ -75,47 +77,7 @@ class Group(Struct, frozen=True, eq=False):
     seen: Callable[[Mapping[str, str], Settings], Any]
     needs: tuple[str, ...] = ()
     exact: bool = False
-
-
-REFUSED = object()
-"""In place of a value that MuJoCo refuses."""
-
-
-class InheritedValues:
-    """The values of the groups of an element that has no attributes itself, computed once per class.
-
-    Groups are known by their place in memory, as is the ``base`` of a class; neither is given up before this is.
-    """
-
-    def __init__(self) -> None:
-        self._known: dict[tuple[int, int], tuple[tuple[Group, Any], ...]] = {}
-        self._groups: list[tuple[Group, ...]] = []
-
-    def of(self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
-        """Each group with its value for the attributes ``base`` that the class gives; REFUSED where MuJoCo refuses them."""
-        place = id(groups), id(base) if base else 0
-        found = self._known.get(place)
-        if found is None:
-            found = self._known[place] = _values_of(groups, base, settings) if base else _own_defaults(groups, settings)
-            self._groups.append(groups)
-        return found
-
-
-@lru_cache(256)
-def _own_defaults(groups: tuple[Group, ...], settings: Settings) -> tuple[tuple[Group, Any], ...]:
-    """The values that the groups have where no class gives any: MuJoCo's own."""
-    return _values_of(groups, {}, settings)
-
-
-def _values_of(groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
-    return tuple([(group, _value_of(group, base, settings)) for group in groups])
-
-
-def _value_of(group: Group, base: Mapping[str, str], settings: Settings) -> Any:
-    try:
-        return group.read(base, settings)
-    except BadAttribute:
-        return REFUSED
+    same: Callable[[Any, Any], bool] = eq
 
 
 # ---- numbers ---------------------------------------------------------------------------------------------------------------
@@ -271,8 +233,13 @@ def seen_pose(attributes: Mapping[str, str], settings: Settings) -> Any:
     return read_numbers(attributes.get("pos", "0 0 0")), turn if any(turn) else ((1.0, 0.0, 0.0, 0.0), *[None] * 4)
 
 
-POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose)
-SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose_or_ends, seen_pose)
+def same_pose(a: object, b: object) -> bool:
+    """Whether two poses, or what stands for none, are equal and written in the same way, which equality does not see."""
+    return a == b and isinstance(a, Pose) and isinstance(b, Pose) and a.written == b.written
+
+
+POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose, same=same_pose)
+SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose_or_ends, seen_pose, same=same_pose)
 
 
 _AT_HOME: Mapping[str, str] = MappingProxyType(

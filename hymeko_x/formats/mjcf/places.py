@@ -23,6 +23,7 @@ from hymeko_x.formats.mjcf.codec import (
     read_pose,
     real,
     reals,
+    same_pose,
     seen_numbers,
     seen_pose,
     text,
@@ -61,7 +62,7 @@ from hymeko_x.ir.written import between_ends, length_of, pose_as_written
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from hymeko_x.ir.parts import Geometry
 
@@ -194,7 +195,15 @@ def _seen_place(attributes: Mapping[str, str], settings: Settings) -> Any:
     return word, size, seen_pose(attributes, settings)
 
 
-PLACE = Group("place", ("type", "size", "fromto", *POSE_NAMES), _read_place, _write_place, _seen_place, ("mesh", "hfield"))
+PLACE = Group(
+    "place",
+    ("type", "size", "fromto", *POSE_NAMES),
+    _read_place,
+    _write_place,
+    _seen_place,
+    ("mesh", "hfield"),
+    same=lambda a, b: a == b and a.pose.written == b.pose.written,
+)
 
 _GREY = (0.5, 0.5, 0.5, 1.0)
 _FRICTION = (1.0, 0.005, 0.0001)
@@ -249,22 +258,6 @@ def _moved(frame: Pose, value: Any) -> Any:
     return compose(frame, value)
 
 
-def same_value(a: Any, b: Any) -> bool:
-    """Whether two values are equal, and written in the same way where that is noted."""
-    if a != b:
-        return False
-    written = _WRITTEN.get(type(a))
-    return written is None or written(a) == written(b)
-
-
-_WRITTEN: dict[type, Callable[[Any], Any]] = {
-    Pose: lambda pose: pose.written,
-    Place: lambda place: place.pose.written,
-    Inertial: lambda inertial: inertial.written and (inertial.written, inertial.written.frame.written),
-}
-"""How the author wrote a value, of the types that record it; equality does not see it."""
-
-
 # ---- things with parameters ---------------------------------------------------------------------------------------------------
 
 
@@ -303,7 +296,9 @@ def _write_shine(value: Pose, settings: Settings) -> dict[str, str]:
     return attributes
 
 
-SHINE = Group("pose", ("pos", "dir"), _read_shine, _write_shine, lambda attributes, settings: plain(attributes, ("pos", "dir")))
+SHINE = Group(
+    "pose", ("pos", "dir"), _read_shine, _write_shine, lambda attributes, settings: plain(attributes, ("pos", "dir")), same=same_pose
+)
 
 
 def _read_light_kind(attributes: Mapping[str, str], settings: Settings) -> str:
@@ -358,6 +353,12 @@ def _write_inertial(value: Inertial, settings: Settings) -> dict[str, str]:
     return {**attributes, "fullinertia": numbers_text(value.tensor)}
 
 
+def _same_inertial(a: Inertial, b: Inertial) -> bool:
+    if a != b or a.written != b.written:
+        return False
+    return a.written is None or b.written is None or a.written.frame.written == b.written.frame.written
+
+
 _INERTIAL_NAMES = ("pos", "mass", "diaginertia", "fullinertia", *TURNS)
 INERTIAL = Group(
     "inertial",
@@ -365,6 +366,7 @@ INERTIAL = Group(
     _read_inertial,
     _write_inertial,
     lambda attributes, settings: (plain(attributes, ("mass", "diaginertia", "fullinertia")), seen_pose(attributes, settings)),
+    same=_same_inertial,
 )
 
 MATERIAL = (

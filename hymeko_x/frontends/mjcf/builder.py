@@ -11,7 +11,8 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import merge
-from hymeko_x.formats.mjcf.codec import REFUSED, BadAttribute, InheritedValues
+from hymeko_x.formats.mjcf.codec import BadAttribute
+from hymeko_x.formats.mjcf.inherited import InheritedValues
 from hymeko_x.formats.mjcf.mesh_order import MESHES, noted_order
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.tree import verbatim
@@ -113,34 +114,27 @@ class MjcfBuilder(Builder):
 
         Where printing the values again would not mean the same, or ``always``, the attributes are noted as they are.
         """
-        own, names, settings = element.attributes, element.attributes.keys(), self.settings
+        own = element.attributes
         merged = merge(base, own)
-        found: Values = {}
-        taken: list[str] = []
+        inherited, given = self.inherited.apart(own, groups, base, self.settings)
+        found: Values = {**inherited}
         try:
-            for group, inherited in self.inherited.of(groups, base, settings):
-                if inherited is not REFUSED and names.isdisjoint(group.names) and (not group.needs or names.isdisjoint(group.needs)):
-                    found[group.key] = inherited
-                    continue
-                value = found[group.key] = group.read(merged, settings)
-                touched = [name for name in group.names if name in own]
-                taken += touched
-                if touched and (always or not (group.exact or self._is_written_again(group, value, base, own))):
-                    for name in touched:
+            for group, names in given:
+                value = found[group.key] = group.read(merged, self.settings)
+                if names and (always or not (group.exact or self._is_written_again(group, value, names, base, own))):
+                    for name in names:
                         self.note(key, attribute(name, prefix), own[name])
         except BadAttribute as error:
             raise self.bad(element, error, merged) from error
-        for name in taken:
-            own.pop(name, None)
+        for _, names in given:
+            for name in names:
+                own.pop(name, None)
         return found
 
-    def _is_written_again(self, group: Group, value: Any, base: Mapping[str, str], own: Mapping[str, str]) -> bool:
-        """Whether printing a value gives attributes of the same meaning as those that it was read from."""
+    def _is_written_again(self, group: Group, value: Any, names: list[str], base: Mapping[str, str], own: Mapping[str, str]) -> bool:
+        """Whether printing a value gives attributes of the same meaning as those that it was read from; ``names`` are those of its own."""
         written = group.write(value, self.settings)
-        for name in group.names:
-            if not _are_same_numbers(written.get(name), own.get(name)):
-                break
-        else:
+        if written.keys() == {*names} and all(_are_same_numbers(written[name], own[name]) for name in names):
             return True
         merged = merge(base, own)
         context = {name: merged[name] for name in group.needs if name in merged}
@@ -187,12 +181,9 @@ class MjcfBuilder(Builder):
         return found
 
 
-def _are_same_numbers(a: str | None, b: str | None) -> bool:
+def _are_same_numbers(a: str, b: str) -> bool:
     """Whether two texts of an attribute are the same, or the same numbers."""
-    if a == b:
-        return True
-    numbers = None if a is None or b is None else read_numbers(a)
-    return bool(numbers) and b is not None and numbers == read_numbers(b)
+    return a == b or bool((numbers := read_numbers(a)) and numbers == read_numbers(b))
 
 
 class Scope(Struct, frozen=True):
