@@ -297,13 +297,14 @@ def legal_dof(dof: Dof, findings: Findings) -> Dof:
 
 
 def _interval(dof: Dof, findings: Findings) -> tuple[float | None, float | None]:
+    if dof.kind not in (DofKind.FREE, DofKind.BALL):
+        return interval(dof.limits, findings)
     lower, upper = _finite(dof.limits.lower), _finite(dof.limits.upper)
-    if dof.kind is DofKind.FREE and not (lower is None and upper is None):
-        findings.append((True, "position limits on a free joint have no meaning; they are left out"))
-        return None, None
     if dof.kind is DofKind.BALL:
         return None if lower else lower, upper  # the angle from straight, whose lower bound is 0 in MJCF
-    return interval(dof.limits, findings)
+    if lower is not None or upper is not None:
+        findings.append((True, "position limits on a free joint have no meaning; they are left out"))
+    return None, None
 
 
 def interval(limits: Limits, findings: Findings) -> tuple[float | None, float | None]:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra, Id
     from hymeko_x.xml.tree import Node
 
-_INDENTS = tuple("  " * depth for depth in range(41))
+_WIDEST_INDENT = 80
 """Elements in more than 40 others are not indented further, so that the text stays linear in their number."""
 _STEP = re.compile(rf"{NAME}(?:\[[1-9]\d*\])?|@{NAME}|text\(\)")
 _PLAIN = re.compile(r"<([A-Za-z_][\w.-]*+)(?:/>|>[\w .,+\-/()\n]*+</\1>)", re.ASCII)
@@ -121,9 +121,9 @@ def _place_for(extra: Extra, tag: Tag) -> int:
 def render(tag: Tag, depth: int = 0) -> list[str]:
     """The lines of a tag, two blanks per level. Foreign text that is not tidy keeps its inner lines; an empty text is an empty line."""
     lines: list[str] = []
-    around: list[tuple[Iterator[Tag | str], str]] = []
+    around: list[tuple[Iterator[Tag | str], str, str]] = []
     row: Iterator[Tag | str] = iter((tag,))
-    indent = _INDENTS[min(depth, 40)]
+    indent = " " * min(2 * depth, _WIDEST_INDENT)
     while True:
         for child in row:
             if isinstance(child, str):
@@ -131,22 +131,22 @@ def render(tag: Tag, depth: int = 0) -> list[str]:
                 lines.append(indent + text if text else "")
                 continue
             name, children = child.name, child.children
-            start = f"{indent}<{name}{attributes_text(child.attributes)}" if child.attributes else f"{indent}<{name}"
+            start = f"{indent}<{name}{attributes_text(child.attributes)}"
             if not children and not child.has_end:
                 lines.append(start + "/>")
             elif len(children) == 1 and isinstance(children[0], str) and not children[0].startswith("<"):
                 lines.append(f"{start}>{children[0]}</{name}>")
             else:
                 lines.append(start + ">")
-                around.append((row, f"{indent}</{name}>"))
-                row, indent = iter(children), _INDENTS[min(depth + len(around), 40)]
+                around.append((row, indent, name))
+                row = iter(children)
+                indent = indent if len(indent) == _WIDEST_INDENT else indent + "  "
                 break
         else:
             if not around:
                 return lines
-            row, end = around.pop()
-            lines.append(end)
-            indent = _INDENTS[min(depth + len(around), 40)]
+            row, indent, name = around.pop()
+            lines.append(f"{indent}</{name}>")
 
 
 def ready(tag: Tag, depth: int) -> str:

@@ -177,7 +177,7 @@ def _read_dynamics(joint: Node, key: Id, builder: UrdfBuilder) -> tuple[float, f
 def _usually(default: float, node: Node, name: str, key: Id, builder: UrdfBuilder) -> float:
     """The number of an attribute, its default value where it is missing or bad."""
     is_missing = name not in node.attributes
-    found = take_number(node, name, builder, instead=f"{default:g} is used")
+    found = None if is_missing else take_number(node, name, builder, instead=f"{default:g} is used")
     value = default if found is None else found
     if value == default:
         builder.follow(key, notations.without(name), follows=is_missing)
@@ -226,6 +226,8 @@ def _rates(node: Node, lower: float | None, upper: float | None, builder: UrdfBu
 
 
 def _rate(node: Node, name: str, builder: UrdfBuilder) -> float | None:
+    if name not in node.attributes:
+        return None
     value = take_number(node, name, builder, instead="unlimited is used")
     return None if value is None or words.is_no_limit(value) else value
 
