@@ -71,6 +71,18 @@ SIZES = (
         "HX020",
     ),
     reading("a million numbers where three belong: m.xml", lambda: MODEL.format(f"<geom size='{'1 ' * MANY}'/>").encode(), "HX020"),
+    reading("two thousand million numbers for each body: m.xml", f'<mujoco><size nuser_body="{2 * 10**9}"/><worldbody/></mujoco>', "HX007"),
+    reading("two thousand million keyframes: m.xml", f'<mujoco><size nkey="{2 * 10**9}"/><worldbody/></mujoco>', "HX007"),
+    reading(
+        "a mesh of ten thousand million points: m.xml",
+        '<mujoco><asset><mesh name="a" builtin="wedge" params="100000 100000 1 1 0"/></asset><worldbody/></mujoco>',
+        "HX007",
+    ),
+    reading(
+        "a height field of a thousand million points: m.xml",
+        '<mujoco><asset><hfield name="a" nrow="40000" ncol="40000" size="1 1 1 1"/></asset><worldbody/></mujoco>',
+        "HX007",
+    ),
     reading("many comments with hyphens: r.urdf", lambda: ROBOT.format("<!-- a -- b -->" * 50_000).encode(), "HX005", code=0, seconds=60.0),
     reading("many tags that never end: r.urdf", lambda: b"<robot>" + b"<a " * 200_000, "HX010", "HX022", "HX045", seconds=60.0),
     reading("many open comments: r.urdf", lambda: b"<robot>" + b"<!-- " * 100_000, "HX010", "HX022", "HX045", seconds=60.0),

@@ -15,7 +15,7 @@ from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.formats.mjcf.classes import ANY_TURN
 from hymeko_x.formats.mjcf.schema import EXCLUSIVE, REMOVED, attributes_of, children, kinds_of, schema
 from hymeko_x.formats.mjcf.tree import COMMENT
-from hymeko_x.frontends.mjcf.rules import complaint, rules_of
+from hymeko_x.frontends.mjcf.rules import complaint, limits_of, rules_of
 from hymeko_x.ir.values import number_text
 from hymeko_x.source import file_stem
 from hymeko_x.xml.tree import read_numbers
@@ -100,6 +100,7 @@ class _Place(Struct, frozen=True):
     required: tuple[str, ...]
     exclusive: Sequence[tuple[str, ...]]
     rules: tuple[Rule, ...]
+    limits: tuple[Rule, ...]
     references: tuple[tuple[str, str], ...]
     named: str | None
 
@@ -113,6 +114,7 @@ def _place_of(path: str) -> _Place:
         schema().required.get(path, ()),
         EXCLUSIVE.get(path, ()),
         rules_of(path),
+        limits_of(path),
         _REFERENCES.get(path, ()),
         _NAMED_APART.get(path),
     )
@@ -121,7 +123,8 @@ def _place_of(path: str) -> _Place:
 def check_words(root: Element) -> Words:
     """The names and references in a tree of known words. Empty numbers are taken out: to MuJoCo they are not there.
 
-    Raises: Refusal (HX020, HX021, HX023, HX027, HX047) at the first element, attribute or value that MuJoCo 4.0 does not know there.
+    Raises: Refusal (HX020, HX021, HX023, HX027, HX047) at the first element, attribute or value that MuJoCo 4.0 does not know there;
+        HX007 at the first count that would make MuJoCo fill the memory.
     """
     stack = [(root, "mujoco")]
     sound: set[tuple[str, ...]] = set()  # places with the names of attributes that an element may have there: most have the same ones
@@ -142,6 +145,8 @@ def check_words(root: Element) -> Words:
             sound.add((path, *element.attributes))
         if place.rules and (broken := complaint(element, place.rules)) is not None:
             raise refuse(codes.BAD_NUMBER, broken, element.origin)
+        if place.limits and (broken := complaint(element, place.limits)) is not None:
+            raise refuse(codes.TOO_LARGE, broken, element.origin)
         if place.references:
             references += _references_of(element, place.references)
         if place.named is not None:

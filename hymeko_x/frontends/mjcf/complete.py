@@ -73,8 +73,8 @@ def complete(mechanism: Mechanism, printed: Printed, files: Files, report: Repor
     assets, missing = _assets(mechanism, files)
     try:
         model = _compiled(mujoco, text, assets)
-    except (ValueError, mujoco.FatalError) as error:
-        reason = str(error).strip().splitlines()[0]
+    except (ValueError, RuntimeError, mujoco.FatalError) as error:
+        reason = str(error).strip().partition("\n")[0]
         record = report.warn if missing else report.error  # a missing file is reported by itself, and is no reason to stop
         record(codes.ENGINE_REFUSED, f"MuJoCo refuses the model, so that inertias and meshes that it computes are left out: {reason}")
         return mechanism
@@ -215,7 +215,7 @@ def _computed_alone(mujoco: Any, mechanism: Mechanism, wanted: list[Id]) -> dict
         return None
     try:
         model = _model_of(mujoco, mechanism, wanted, _settings(mechanism))
-    except (ValueError, mujoco.FatalError):
+    except (ValueError, RuntimeError, mujoco.FatalError):
         return None
     if model.body_mass[1:].min() < _LEAST or model.body_inertia[1:].min() < _LEAST:
         return None
@@ -233,7 +233,7 @@ def are_solids_alone(mechanism: Mechanism, bodies: list[Id]) -> bool:
 def _model_of(mujoco: Any, mechanism: Mechanism, bodies: list[Id], settings: Settings) -> Any:
     """MuJoCo's model of these bodies in this order, each a child of the world with nothing but its solids.
 
-    Raises: ValueError or mujoco.FatalError when MuJoCo refuses it.
+    Raises: ValueError, RuntimeError or mujoco.FatalError when MuJoCo refuses it.
     """
     spec = mujoco.MjSpec()
     spec.compiler.degree = settings.degree

@@ -36,6 +36,16 @@ def _less_than(least: float, *names: str) -> Rule:
     return rule
 
 
+def _at_most(most: float, *names: str) -> Rule:
+    """A rule: none of these attributes is greater."""
+
+    def rule(element: Element) -> str | None:
+        bad = next((name for name in names if any(number > most for number in _numbers(element, name))), None)
+        return None if bad is None else f"<{element.tag} {bad}> is '{element.attributes[bad]}', expected at most {most:g}"
+
+    return rule
+
+
 def _positive(*names: str) -> Rule:
     """A rule: these attributes are greater than zero."""
 
@@ -259,6 +269,28 @@ _RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
 )
 
 
+_MOST_COUNTED = 10_000
+_MOST_STEPS = 1_000
+_MOST_HEIGHTS = 100_000_000
+
+
+def _grid(element: Element) -> str | None:
+    rows, columns = (int(element.attributes.get(name, "0")) for name in ("nrow", "ncol"))
+    if rows * columns <= _MOST_HEIGHTS:
+        return None
+    return f"<hfield> has {rows} rows and {columns} columns, expected at most {_MOST_HEIGHTS} heights"
+
+
+_LIMITS: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
+    {
+        "size": (_at_most(_MOST_COUNTED, *_COUNTS, "nkey"),),
+        "asset/mesh": (_at_most(_MOST_STEPS, "params"),),
+        "asset/hfield": (_grid,),
+    }
+)
+"""Counts for which MuJoCo has no limit: with a few letters a file would make it fill the memory, or compute for hours."""
+
+
 def complaint(element: Element, rules: tuple[Rule, ...]) -> str | None:
     """What MuJoCo would refuse in this element by these rules; None when it is fine."""
     for rule in rules:
@@ -274,3 +306,8 @@ def rules_of(path: str) -> tuple[Rule, ...]:
     if path.startswith("sensor/"):
         return (*rules, _NOT_NEGATIVE, *((_together("reftype", "refname"),) if path.startswith("sensor/frame") else ()))
     return (*rules, *_TRANSMITS) if path.startswith("actuator/") else rules
+
+
+def limits_of(path: str) -> tuple[Rule, ...]:
+    """The limits of counts for the elements of this place of the schema, which are ours and not MuJoCo's."""
+    return _LIMITS.get(path, ())

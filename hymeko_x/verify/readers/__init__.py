@@ -19,6 +19,7 @@ from hymeko_x.assets import archives
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.extras import install_command
 from hymeko_x.verify.readers import apart
+from hymeko_x.verify.readers.bounded import bounded_memory
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -80,12 +81,12 @@ def _read_inside(within: archives.Inside, lookup: Lookup) -> KinematicModel:
 
 
 def in_own_thread(call: Callable[[], T]) -> T:
-    """Returns and raises what ``call`` does, from a thread of its own.
+    """Returns and raises what ``call`` does, from a thread of its own and within the bound on memory.
 
     MuJoCo 4.0's bindings leave their handler of warnings in the thread in which a model makes them raise `Caught an unknown exception!`:
     the next warning about a file in that thread never ends.
     """
-    with ThreadPoolExecutor(1) as pool:
+    with bounded_memory, ThreadPoolExecutor(1) as pool:
         return pool.submit(call).result()
 
 
