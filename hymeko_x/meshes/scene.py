@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import struct
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import ParseError
@@ -28,6 +29,7 @@ def read_scene(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, with_
     try:
         if suffix == ".dae":
             return _collada_parts(data, fetch, with_appearance=with_appearance)
+        check_accessors(data, suffix)
         scene = trimesh.load_scene(io.BytesIO(data), suffix[1:], resolver=_resolver(fetch), process=False)
         placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
         return [
@@ -35,8 +37,28 @@ def read_scene(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, with_
             for matrix, name in placed
             for part in _placed_part(scene.geometry[name], matrix, _file_normals(scene.geometry[name]), with_appearance=with_appearance)
         ]
-    except _raised_by_loaders(suffix) as error:
+    except raised_by_loaders(suffix) as error:
         raise Unreadable(str(error).split("\n")[0][:200] or type(error).__name__) from error
+
+
+_MOST_ZEROS = 3 * MOST_FACES
+"""Elements of accessors without data, for which a few letters of a glTF file ask."""
+
+
+def check_accessors(data: bytes, suffix: str) -> None:
+    """Raises: Unreadable when a glTF file asks for more zeros than a mesh may have corners. What is no glTF is left to trimesh."""
+    if suffix not in (".gltf", ".glb"):
+        return
+    text = data if suffix == ".gltf" else data[20 : 20 + int.from_bytes(data[12:16], "little")]
+    try:
+        header = json.loads(text)
+    except (ValueError, RecursionError):
+        return
+    accessors = header.get("accessors") if isinstance(header, dict) else None
+    bare = [found for found in accessors or () if isinstance(found, dict) and "bufferView" not in found]
+    count = sum(found["count"] for found in bare if isinstance(found.get("count"), int))
+    if count > _MOST_ZEROS:
+        raise Unreadable(f"it has {count} elements without data, at most {_MOST_ZEROS} are read")
 
 
 def _collada_parts(data: bytes, fetch: Callable[[str], bytes], *, with_appearance: bool) -> list[Submesh]:
@@ -177,13 +199,15 @@ _DAMAGED = (
     RuntimeError,
     SyntaxError,
     TypeError,
+    UnboundLocalError,
     ValueError,
     struct.error,
 )
 """What the loaders behind trimesh raise on damaged files; they check little before they index."""
 
 
-def _raised_by_loaders(suffix: str) -> tuple[type[Exception], ...]:
+def raised_by_loaders(suffix: str) -> tuple[type[Exception], ...]:
+    """What loading a file of this type may raise."""
     if suffix != ".dae":
         return _DAMAGED
     from collada.common import DaeError

@@ -157,15 +157,21 @@ def _load(path: Path) -> Surface | str:
 def _load_by_trimesh(path: Path) -> Surface | str:
     import trimesh
 
+    from hymeko_x.meshes.scene import check_accessors, raised_by_loaders
+    from hymeko_x.meshes.submesh import Unreadable
+
+    kind = path.suffix.lower()
+    refusals: tuple[type[Exception], ...] = (Unreadable, *raised_by_loaders(kind))
     try:
+        check_accessors(path.read_bytes(), kind)
         loaded = trimesh.load_scene(str(path), process=False)
         whole = loaded.to_mesh()
-    except (ValueError, KeyError, IndexError, TypeError, AttributeError, OSError, ImportError, NotImplementedError) as error:
+    except refusals as error:
         return f"the mesh '{path.name}' cannot be read: {error}"
     if len(whole.faces) == 0:
         return f"the mesh '{path.name}' {_EMPTY}"
-    polygons = path.suffix.lower() == ".obj" and _POLYGON.search(path.read_bytes()) is not None
-    points = np.asarray(whole.vertices, dtype=float) * (_metres(loaded) if path.suffix.lower() == ".dae" else 1.0)
+    polygons = kind == ".obj" and _POLYGON.search(path.read_bytes()) is not None
+    points = np.asarray(whole.vertices, dtype=float) * (_metres(loaded) if kind == ".dae" else 1.0)
     return Surface(points, np.asarray(whole.faces, dtype=np.intp), polygons)
 
 

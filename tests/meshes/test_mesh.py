@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import struct
 
 import numpy as np
@@ -196,6 +197,32 @@ def test_rubbish_of_any_type_is_refused_in_one_line(data: bytes, suffix: str) ->
         read_parts(data, suffix, nothing_else)
     assert str(refusal.value)
     assert "\n" not in str(refusal.value)
+
+
+def gltf_of_zeros(count: int, views: list[object], suffix: str) -> bytes:
+    """A mesh of so many corners at the origin, of which nothing is in the file."""
+    accessors = [{"componentType": 5126, "type": "VEC3", "count": 3}, {"componentType": 5125, "type": "SCALAR", "count": count}]
+    meshes = [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}]
+    found = {"scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "meshes": meshes, "accessors": accessors}
+    found |= {"asset": {"version": "2.0"}, "buffers": [{"byteLength": 12, "uri": "data:;base64,AAAAAAAAAAAAAAAA"}]}
+    found |= {"bufferViews": views} if views else {}
+    text = json.dumps(found).encode()
+    return text if suffix == ".gltf" else struct.pack("<4sIIII", b"glTF", 2, len(text) + 20, len(text), 0x4E4F534A) + text
+
+
+@pytest.mark.parametrize("suffix", [".gltf", ".glb"])
+def test_a_gltf_file_that_asks_for_more_zeros_than_a_mesh_has_corners_is_refused(suffix: str) -> None:
+    views = [{"buffer": 0, "byteLength": 12}]
+    with pytest.raises(Unreadable, match="it has 900000003 elements without data, at most 60000000 are read"):
+        read_parts(gltf_of_zeros(900_000_000, views, suffix), suffix, nothing_else)
+    with pytest.raises(Unreadable, match="no triangles"):
+        read_parts(gltf_of_zeros(0, views, suffix), suffix, nothing_else)
+
+
+@pytest.mark.parametrize("suffix", [".gltf", ".glb"])
+def test_a_gltf_file_without_any_data_is_refused(suffix: str) -> None:
+    with pytest.raises(Unreadable):
+        read_parts(gltf_of_zeros(3, [], suffix), suffix, nothing_else)
 
 
 def test_a_type_that_is_not_read_is_refused() -> None:

@@ -69,6 +69,18 @@ def test_a_mesh_that_cannot_be_opened_is_a_reason(tmp_path: Path) -> None:
     assert words.startswith(f"the mesh '{tmp_path.name}' cannot be read: ")
 
 
+GLTF = """{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes":
+{"POSITION": 0}}]}], "accessors": [{"componentType": 5126, "type": "VEC3", "count": COUNT}]}"""
+
+
+@pytest.mark.parametrize(("count", "reason"), [(900_000_000, "it has 900000000 elements without data, at most 60000000 are read"), (3, "")])
+def test_a_gltf_file_without_data_is_a_reason(count: int, reason: str, tmp_path: Path) -> None:
+    (tmp_path / "a.gltf").write_text(GLTF.replace("COUNT", str(count)))
+    words = Meshes().surface(MeshFile("a.gltf", tmp_path / "a.gltf"))
+    assert isinstance(words, str)
+    assert words.startswith(f"the mesh 'a.gltf' cannot be read: {reason}")
+
+
 def test_faces_of_any_number_of_corners_become_fans_of_triangles(tmp_path: Path) -> None:
     stage = Usd.Stage.CreateNew(str(tmp_path / "faces.usda"))
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)
