@@ -35,6 +35,11 @@ class BoundedMemory:
                 resource.setrlimit(resource.RLIMIT_DATA, self._before)
 
 
+def suspected(error: Exception) -> str:
+    """What may have been the reason of an error for which an engine knows none; empty where it knows one."""
+    return f"; it may take no more than {MOST_BYTES / 1e9:.2g} GB of memory" if isinstance(error, RuntimeError) else ""
+
+
 def _lowered() -> tuple[int, int] | None:
     """Lower the limit of this process. Returns the limits before; None where it stays as it is."""
     try:

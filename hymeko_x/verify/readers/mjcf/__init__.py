@@ -18,7 +18,8 @@ from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.verify.features import Feature
 from hymeko_x.verify.kinematics import disagreement
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, Role, Shape, Surface, world_body
-from hymeko_x.verify.readers import bounded, in_own_thread, native_output
+from hymeko_x.verify.readers import in_own_thread, native_output
+from hymeko_x.verify.readers.bounded import suspected
 from hymeko_x.verify.readers.mjcf.constraints import (
     SENSOR_KINDS,
     read_actuators,
@@ -61,9 +62,7 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
             compiled = in_own_thread(lambda: _compiled(path))
         except (ValueError, RuntimeError, mujoco.FatalError) as error:
             reason = " ".join(str(error).split()) or output()
-            if isinstance(error, RuntimeError):  # of which MuJoCo does not know what it was
-                reason += f"; it may take no more than {bounded.MOST_BYTES / 1e9:.2g} GB of memory"
-            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses {path.name}: {reason}", Origin(str(path))) from error
+            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses {path.name}: {reason}{suspected(error)}", Origin(str(path))) from error
     found = from_compiled(compiled)
     difference = disagreement(found, lambda q: np.stack([_engine_poses(compiled, row) for row in engine_coordinates(found, q)]))
     if difference:
