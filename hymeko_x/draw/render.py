@@ -16,7 +16,7 @@ from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.draw.scene import COLLISION, FIELD_OF_VIEW, GROUND, VISUAL, add_scene, remove_surroundings
 from hymeko_x.ir.holder import mechanism_of
 from hymeko_x.verify.readers import in_own_thread
-from hymeko_x.verify.readers.bounded import suspected
+from hymeko_x.verify.readers.bounded import hint_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -201,7 +201,7 @@ def open_studio(robot: Mechanism | Holder, path: str | None, look: Look, like: S
         try:
             return Studio(in_own_thread(lambda: mujoco.MjSpec.from_file(path)), path, look, like)
         except (ValueError, RuntimeError) as error:
-            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}{suspected(error)}", Origin(path)) from error
+            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}", Origin(path), hint=hint_for(error)) from error
     row = next(row for row in formats.FORMATS if is_drawn(row))
     with TemporaryDirectory(prefix="hymeko-x-") as folder:
         file = Path(folder) / f"robot{row.suffixes[0]}"
@@ -215,7 +215,7 @@ def _compiled(spec: Any, name: str) -> mujoco.MjModel:
     try:
         return in_own_thread(spec.compile)
     except (ValueError, RuntimeError, mujoco.FatalError) as error:
-        raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}{suspected(error)}", Origin(name)) from error
+        raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}", Origin(name), hint=hint_for(error)) from error
 
 
 def _first_line(error: Exception) -> str:

@@ -35,9 +35,11 @@ class BoundedMemory:
                 resource.setrlimit(resource.RLIMIT_DATA, self._before)
 
 
-def suspected(error: Exception) -> str:
-    """What may have been the reason of an error for which an engine knows none; empty where it knows one."""
-    return f"; it may take no more than {MOST_BYTES / 1e9:.2g} GB of memory" if isinstance(error, RuntimeError) else ""
+def hint_for(error: Exception) -> str:
+    """What may have been the reason of an error for which an engine gives none; empty where it gives one."""
+    if not isinstance(error, RuntimeError):
+        return ""
+    return f"an attribute without its numbers may be the reason, or that the model takes more than {MOST_BYTES / 1e9:.2g} GB of memory"
 
 
 def _lowered() -> tuple[int, int] | None:

@@ -19,7 +19,7 @@ from hymeko_x.verify.features import Feature
 from hymeko_x.verify.kinematics import disagreement
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, Role, Shape, Surface, world_body
 from hymeko_x.verify.readers import in_own_thread, native_output
-from hymeko_x.verify.readers.bounded import suspected
+from hymeko_x.verify.readers.bounded import hint_for
 from hymeko_x.verify.readers.mjcf.constraints import (
     SENSOR_KINDS,
     read_actuators,
@@ -62,7 +62,8 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
             compiled = in_own_thread(lambda: _compiled(path))
         except (ValueError, RuntimeError, mujoco.FatalError) as error:
             reason = " ".join(str(error).split()) or output()
-            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses {path.name}: {reason}{suspected(error)}", Origin(str(path))) from error
+            message = f"MuJoCo refuses {path.name}: {reason}"
+            raise refuse(codes.ENGINE_REFUSED, message, Origin(str(path)), hint=hint_for(error)) from error
     found = from_compiled(compiled)
     difference = disagreement(found, lambda q: np.stack([_engine_poses(compiled, row) for row in engine_coordinates(found, q)]))
     if difference:
