@@ -71,7 +71,11 @@ SIZES = (
         "HX020",
     ),
     reading("a million numbers where three belong: m.xml", lambda: MODEL.format(f"<geom size='{'1 ' * MANY}'/>").encode(), "HX020"),
-    reading("two thousand million numbers for each body: m.xml", f'<mujoco><size nuser_body="{2 * 10**9}"/><worldbody/></mujoco>', "HX007"),
+    reading(
+        "two thousand million numbers of user data for each body: m.xml",
+        f'<mujoco><size nuser_body="{2 * 10**9}"/><worldbody/></mujoco>',
+        "HX007",
+    ),
     reading("two thousand million keyframes: m.xml", f'<mujoco><size nkey="{2 * 10**9}"/><worldbody/></mujoco>', "HX007"),
     reading(
         "a mesh of ten thousand million points: m.xml",

@@ -270,7 +270,9 @@ _RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
 
 
 _MOST_COUNTED = 10_000
+"""Numbers of user data for each element, and keyframes."""
 _MOST_STEPS = 1_000
+"""Steps of a built-in mesh in one direction: of a million points MuJoCo computes the hull for 20 s."""
 _MOST_HEIGHTS = 100_000_000
 
 
