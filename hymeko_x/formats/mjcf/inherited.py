@@ -25,19 +25,6 @@ class InheritedValues:
     def __init__(self) -> None:
         self._known: dict[tuple[int, int], tuple[tuple[Group, Any], ...]] = {}
         self._groups: list[tuple[Group, ...]] = []
-        self._forms: dict[tuple[Any, ...], tuple[dict[str, Any], list[tuple[Group, list[str]]]]] = {}
-
-    def apart(
-        self, own: Mapping[str, str], groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings
-    ) -> tuple[Mapping[str, Any], list[tuple[Group, list[str]]]]:
-        """The values that an element with these attributes inherits, by the keys of their groups; and the groups that it has values of
-        its own for, each with its attributes. Computed once for all elements that have attributes of the same names.
-        """
-        form = (id(groups), id(base) if base else 0, *own)
-        found = self._forms.get(form)
-        if found is None:
-            found = self._forms[form] = _apart(own, self.of(groups, base, settings))
-        return found
 
     def of(self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
         """Each group with its value for the attributes ``base`` that the class gives; REFUSED where MuJoCo refuses them."""
@@ -47,18 +34,6 @@ class InheritedValues:
             found = self._known[place] = _values_of(groups, base, settings) if base else _own_defaults(groups, settings)
             self._groups.append(groups)
         return found
-
-
-def _apart(own: Mapping[str, str], values: tuple[tuple[Group, Any], ...]) -> tuple[dict[str, Any], list[tuple[Group, list[str]]]]:
-    names = own.keys()
-    inherited: dict[str, Any] = {}
-    groups: list[tuple[Group, list[str]]] = []
-    for group, value in values:
-        if value is not REFUSED and names.isdisjoint(group.names) and names.isdisjoint(group.needs):
-            inherited[group.key] = value
-        else:
-            groups.append((group, [name for name in group.names if name in own]))
-    return inherited, groups
 
 
 @lru_cache(256)

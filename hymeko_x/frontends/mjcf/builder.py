@@ -12,7 +12,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import merge
 from hymeko_x.formats.mjcf.codec import BadAttribute
-from hymeko_x.formats.mjcf.inherited import InheritedValues
+from hymeko_x.formats.mjcf.inherited import REFUSED, InheritedValues
 from hymeko_x.formats.mjcf.mesh_order import MESHES, noted_order
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.tree import verbatim
@@ -114,21 +114,25 @@ class MjcfBuilder(Builder):
 
         Where printing the values again would not mean the same, or ``always``, the attributes are noted as they are.
         """
-        own = element.attributes
+        own, names, settings = element.attributes, element.attributes.keys(), self.settings
         merged = merge(base, own)
-        inherited, given = self.inherited.apart(own, groups, base, self.settings)
-        found: Values = {**inherited}
+        found: Values = {}
+        taken: list[str] = []
         try:
-            for group, names in given:
-                value = found[group.key] = group.read(merged, self.settings)
-                if names and (always or not (group.exact or self._is_written_again(group, value, names, base, own))):
-                    for name in names:
+            for group, inherited in self.inherited.of(groups, base, settings):
+                if inherited is not REFUSED and names.isdisjoint(group.names) and names.isdisjoint(group.needs):
+                    found[group.key] = inherited
+                    continue
+                value = found[group.key] = group.read(merged, settings)
+                touched = [name for name in group.names if name in own]
+                taken += touched
+                if touched and (always or not (group.exact or self._is_written_again(group, value, touched, base, own))):
+                    for name in touched:
                         self.note(key, attribute(name, prefix), own[name])
         except BadAttribute as error:
             raise self.bad(element, error, merged) from error
-        for _, names in given:
-            for name in names:
-                own.pop(name, None)
+        for name in taken:
+            own.pop(name, None)
         return found
 
     def _is_written_again(self, group: Group, value: Any, names: list[str], base: Mapping[str, str], own: Mapping[str, str]) -> bool:
