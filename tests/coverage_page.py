@@ -77,7 +77,7 @@ def kinds_of_lines(source: str) -> dict[int, str]:
 
 
 def _statements(tree: ast.AST) -> Iterator[tuple[ast.AST, ast.stmt | ast.ExceptHandler, bool]]:
-    """Every statement, outer ones first, with what it stands in, and whether that is a block that ends in a report."""
+    """Every statement, outer ones first, with what it stands in, and whether that is a block that reports something."""
     for node in ast.walk(tree):
         for name in ("body", "orelse", "finalbody", "handlers"):
             block = getattr(node, name, None)

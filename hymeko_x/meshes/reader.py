@@ -12,7 +12,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from hymeko_x.memory import remembered, remembered_reader
-from hymeko_x.meshes.scene import read_scene
+from hymeko_x.meshes.scene import GLTF, read_scene
 from hymeko_x.meshes.stl import read_stl
 from hymeko_x.meshes.submesh import MOST_FACES, Appearance, ColouredMesh, MaterialEntry, MaterialGroup, Submesh, Unreadable
 from hymeko_x.meshes.weld import joined
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 
 READABLE = (".stl", ".obj", ".dae", ".glb", ".gltf", ".ply", ".off")
 """The types of mesh files that can be read, by suffix."""
-_IN_SEVERAL_FILES = (".gltf", ".glb")
-"""Types whose triangles may be in files of their own."""
 
 MOST_BYTES = 2**28
 
@@ -169,7 +167,7 @@ def read_whole(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Subme
         return _welded(read_stl(data), None)
     found: Sequence[MaterialGroup | Submesh] = _plain_groups(data, suffix)
     if not found:
-        found = read_scene(data, suffix, fetch if suffix in _IN_SEVERAL_FILES else _nothing_beside, with_appearance=False)
+        found = read_scene(data, suffix, fetch if suffix in GLTF else _nothing_beside, with_appearance=False)
     points, faces = put_in_one([(some.points, some.faces) for some in found])
     return sound((Submesh(points, _without_degenerate(faces)),))[0]
 
@@ -275,7 +273,7 @@ def read_mapped(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Subm
         return read_whole(data, suffix, fetch)
     groups = [group for group in _plain_groups(data, suffix, mapped=True, normals=True) if len(group.faces)]
     if not groups:
-        found = read_scene(data, suffix, fetch if suffix in _IN_SEVERAL_FILES else _nothing_beside, with_appearance=False)
+        found = read_scene(data, suffix, fetch if suffix in GLTF else _nothing_beside, with_appearance=False)
         groups = [_group_of(part) for part in found]
     if suffix != ".obj" or any(group.uv is None for group in groups):
         groups = [group._replace(uv=None, corners=None) for group in groups]

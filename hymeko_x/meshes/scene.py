@@ -29,7 +29,8 @@ def read_scene(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, with_
     try:
         if suffix == ".dae":
             return _collada_parts(data, fetch, with_appearance=with_appearance)
-        check_accessors(data, suffix)
+        if suffix in GLTF:
+            check_accessors(data, suffix)
         scene = trimesh.load_scene(io.BytesIO(data), suffix[1:], resolver=_resolver(fetch), process=False)
         placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
         return [
@@ -41,14 +42,14 @@ def read_scene(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, with_
         raise Unreadable(str(error).split("\n")[0][:200] or type(error).__name__) from error
 
 
+GLTF = (".gltf", ".glb")
+"""The types of glTF, whose triangles may be in files of their own."""
 _MOST_ZEROS = 3 * MOST_FACES
 """Elements of accessors without data, for which a few letters of a glTF file ask."""
 
 
 def check_accessors(data: bytes, suffix: str) -> None:
     """Raises: Unreadable when a glTF file asks for more zeros than a mesh may have corners. What is no glTF is left to trimesh."""
-    if suffix not in (".gltf", ".glb"):
-        return
     text = data if suffix == ".gltf" else data[20 : 20 + int.from_bytes(data[12:16], "little")]
     try:
         header = json.loads(text)

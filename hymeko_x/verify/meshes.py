@@ -157,13 +157,14 @@ def _load(path: Path) -> Surface | str:
 def _load_by_trimesh(path: Path) -> Surface | str:
     import trimesh
 
-    from hymeko_x.meshes.scene import check_accessors, raised_by_loaders
+    from hymeko_x.meshes.scene import GLTF, check_accessors, raised_by_loaders
     from hymeko_x.meshes.submesh import Unreadable
 
     kind = path.suffix.lower()
     refusals: tuple[type[Exception], ...] = (Unreadable, *raised_by_loaders(kind))
     try:
-        check_accessors(path.read_bytes(), kind)
+        if kind in GLTF:
+            check_accessors(path.read_bytes(), kind)
         loaded = trimesh.load_scene(str(path), process=False)
         whole = loaded.to_mesh()
     except refusals as error:

@@ -112,8 +112,12 @@ def _frame_scale(element: Element) -> str | None:
     return None
 
 
+def _rows_and_columns(element: Element) -> tuple[int, int]:
+    return int(element.attributes.get("nrow", "0")), int(element.attributes.get("ncol", "0"))
+
+
 def _hfield(element: Element) -> str | None:
-    rows, columns = (int(element.attributes.get(name, "0")) for name in ("nrow", "ncol"))
+    rows, columns = _rows_and_columns(element)
     heights = element.attributes.get("elevation", "").split()
     if "file" not in element.attributes and (rows < 2 or columns < 2):
         return f"<hfield> has {rows} rows and {columns} columns, expected at least 2 of each"
@@ -277,7 +281,7 @@ _MOST_HEIGHTS = 100_000_000
 
 
 def _grid(element: Element) -> str | None:
-    rows, columns = (int(element.attributes.get(name, "0")) for name in ("nrow", "ncol"))
+    rows, columns = _rows_and_columns(element)
     if rows * columns <= _MOST_HEIGHTS:
         return None
     return f"<hfield> has {rows} rows and {columns} columns, expected at most {_MOST_HEIGHTS} heights"

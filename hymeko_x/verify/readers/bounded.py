@@ -50,10 +50,10 @@ def _lowered() -> tuple[int, int] | None:
         used = int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
     except (ImportError, OSError):
         return None
-    soft, hard = before = resource.getrlimit(resource.RLIMIT_DATA)
+    before = resource.getrlimit(resource.RLIMIT_DATA)
     known = [limit for limit in before if limit != resource.RLIM_INFINITY]
-    resource.setrlimit(resource.RLIMIT_DATA, (min([used + MOST_BYTES, *known]), hard))
-    return soft, hard
+    resource.setrlimit(resource.RLIMIT_DATA, (min([used + MOST_BYTES, *known]), before[1]))
+    return before
 
 
 bounded_memory = BoundedMemory()
