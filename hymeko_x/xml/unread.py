@@ -115,10 +115,13 @@ class Unread:
             end = self._data.index(b">", end) + 1
         is_outer = node.parent is None or _place_below_owner(node.parent) == (ROOT, "")
         text = self._data[node.start : end].decode().replace("\r\n", "\n").replace("\r", "\n")
-        return with_declared(laid_out(text, 1 if is_outer else 2), _declared_above(node))
+        text = laid_out(text, 1 if is_outer else 2)
+        return with_declared(text, _declared_above(node)) if ":" in text else text
 
     def _declare_prefixes(self, node: Node) -> None:
         """Declare at the root the prefixes in an element that are declared nowhere."""
+        if self._data.find(b":", node.start, node.end) < 0:
+            return
         for member in node.walk():
             self._declare_prefix(member, member.tag)
             for name in member.attributes:
