@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import cached_property
 from itertools import chain
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeGuard, TypeVar
+from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
 
 from msgspec import Struct, field
 from msgspec.structs import replace
@@ -97,20 +97,12 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
     # ---- elements by kind ------------------------------------------------------------------------------------------------
 
     def vertices(self, part: type[P]) -> Iterator[tuple[Id, P]]:
-        """The vertices that carry this kind of part, in order."""
-        if KINDS.get(part, "") not in self._kinds_of_vertices:
-            return
-        for key, data in self.graph.vertices.items():
-            if isinstance(data, part):
-                yield key, data
+        """The vertices that carry this kind of part, in order. Raises: KeyError for a class that is no kind of part."""
+        return iter(self._vertices_by_kind.get(KINDS[part], ()))
 
     def edges(self, part: type[P]) -> Iterator[tuple[Id, P, tuple[RobotArc, ...]]]:
-        """The edges of this kind with their arcs, in order."""
-        if KINDS.get(part, "") not in self._kinds_of_edges:
-            return
-        for key, edge in self.graph.edges.items():
-            if isinstance(edge.data, part):
-                yield key, edge.data, edge.arcs
+        """The edges of this kind with their arcs, in order. Raises: KeyError for a class that is no kind of part."""
+        return iter(self._edges_by_kind.get(KINDS[part], ()))
 
     def assets(self) -> Iterator[tuple[Id, parts.Mesh | parts.Texture]]:
         """What may be in files of its own: the meshes in order, then the textures."""
@@ -118,14 +110,18 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
         yield from self.vertices(parts.Texture)
 
     @cached_property
-    def _kinds_of_vertices(self) -> frozenset[str]:
-        """The kinds of parts of which there is a vertex, and "" for whatever has no kind of its own: most robots have few."""
-        return frozenset([key.kind for key in self.graph.vertices]) | {""}
+    def _vertices_by_kind(self) -> Mapping[str, list[tuple[Id, Any]]]:
+        found: dict[str, list[tuple[Id, Any]]] = {}
+        for key, data in self.graph.vertices.items():
+            found.setdefault(key.kind, []).append((key, data))
+        return found
 
     @cached_property
-    def _kinds_of_edges(self) -> frozenset[str]:
-        """The same of edges."""
-        return frozenset([key.kind for key in self.graph.edges]) | {""}
+    def _edges_by_kind(self) -> Mapping[str, list[tuple[Id, Any, tuple[RobotArc, ...]]]]:
+        found: dict[str, list[tuple[Id, Any, tuple[RobotArc, ...]]]] = {}
+        for key, edge in self.graph.edges.items():
+            found.setdefault(key.kind, []).append((key, edge.data, edge.arcs))
+        return found
 
     # ---- the tree --------------------------------------------------------------------------------------------------------
 
@@ -292,7 +288,7 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
 
 
 _NO_NOTATIONS: Mapping[str, str] = MappingProxyType({})
-_OF_EDGES = ("_kinds_of_edges", "joints", "children", "parent_joint", "shapes", "subsets", "mounts")
+_OF_EDGES = ("_edges_by_kind", "joints", "children", "parent_joint", "shapes", "subsets", "mounts")
 """What a mechanism computes of its edges alone."""
 
 
