@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import operator
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -10,14 +12,19 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import native_format
+from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, DofKind
-from hymeko_x.rewrite.servos import loads
+from hymeko_x.ir.values import IDENTITY
+from hymeko_x.rewrite.servos import frames_at_home, home_poses, inertia_of, motion_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
+    from hymeko_x.ir.parts import Dof
+    from hymeko_x.ir.values import Pose
     from hymeko_x.rewrite.context import Context
+    from hymeko_x.rewrite.servos import Inertia
 
 _SHOWN = 3
 """How many joints a note names."""
@@ -33,8 +40,8 @@ def give_light_dofs_rotors(mechanism: Mechanism, context: Context) -> Mechanism:
     Source: MuJoCo's documentation, Modeling, Numerical stability: armature makes light joints stable.
     """
     light: dict[Id, list[int]] = {}
-    for (joint, number), load in loads(mechanism).items():
-        if load.free < _LIGHT:
+    for (joint, number), inertia in free_inertias(mechanism).items():
+        if inertia < _LIGHT:
             light.setdefault(joint, []).append(number)
     if not light or _has_unknown_masses(mechanism):
         return mechanism
@@ -53,3 +60,63 @@ def give_light_dofs_rotors(mechanism: Mechanism, context: Context) -> Mechanism:
 def _has_unknown_masses(mechanism: Mechanism) -> bool:
     """Whether an engine computes masses from shapes, as that of the format does from which the mechanism came."""
     return native_format(mechanism) is not None and any(body.inertial is None for _, body in mechanism.vertices(Body))
+
+
+# ---- articulated inertias: six rows in the world about its origin, rotation before translation ---------------------------------------
+
+_Matrix = list[list[float]]
+
+
+def free_inertias(mechanism: Mechanism) -> dict[tuple[Id, int], float]:
+    """What each hinge, slide and screw moves at home while the dofs behind it are free, in kg m^2 or kg, by joint and number.
+
+    Source: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7 (articulated inertias).
+    """
+    poses = home_poses(mechanism)
+    moved = {body: _matrix_of(inertia_of(mechanism.vertex(body, Body), pose)) for body, pose in poses.items() if body != WORLD}
+    found: dict[tuple[Id, int], float] = {}
+    for body in reversed([*mechanism.depth_first()]):
+        view = mechanism.parent_joint.get(body)
+        if view is None:
+            continue
+        frames = [*frames_at_home(view, poses.get(view.parent, IDENTITY))]
+        for number in reversed(range(len(view.joint.dofs))):
+            dof = view.joint.dofs[number]
+            if dof.kind in (DofKind.BALL, DofKind.FREE):
+                moved[body] = [[0.0] * 6 for _ in range(6)]
+            else:
+                found[view.id, number] = _release(moved[body], dof, frames[number])
+        if view.parent != WORLD:
+            _add(moved[view.parent], moved[body])
+    return found
+
+
+def _release(moved: _Matrix, dof: Dof, frame: Pose) -> float:
+    """The inertia that a dof in this frame moves, which is taken from what is moved by the dofs before it."""
+    axis = [*itertools.chain(*motion_of(dof, frame))]
+    pushed = [_dot(row, axis) for row in moved]
+    inertia = max(_dot(axis, pushed), 0.0) + dof.armature
+    if inertia > 0.0:
+        _add(moved, [[-a * b / inertia for b in pushed] for a in pushed])
+    return inertia
+
+
+def _matrix_of(inertia: Inertia) -> _Matrix:
+    mass, (a, b, c), (xx, yy, zz, xy, xz, yz) = inertia
+    return [
+        [xx, xy, xz, 0.0, -c, b],
+        [xy, yy, yz, c, 0.0, -a],
+        [xz, yz, zz, -b, a, 0.0],
+        [0.0, c, -b, mass, 0.0, 0.0],
+        [-c, 0.0, a, 0.0, mass, 0.0],
+        [b, -a, 0.0, 0.0, 0.0, mass],
+    ]
+
+
+def _add(to: _Matrix, other: _Matrix) -> None:
+    for row, more in zip(to, other, strict=True):
+        row[:] = map(operator.add, row, more)
+
+
+def _dot(a: Sequence[float], b: Sequence[float]) -> float:
+    return float(sum(map(operator.mul, a, b)))

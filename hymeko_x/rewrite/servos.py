@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, NamedTuple
 from hymeko_x.ir.kinematics import displacement, dof_number
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, DofKind
-from hymeko_x.ir.values import IDENTITY, Pose, add, apply, compose, cross, inverse, rotate, rotate_tensor, scaled
+from hymeko_x.ir.values import IDENTITY, ZERO, Pose, add, apply, compose, cross, dot, inverse, rotate, rotate_tensor, scaled
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotArc
     from hymeko_x.ir.parts import Dof, Parameters
+    from hymeko_x.ir.values import Tensor, Vec3
 
 GRAVITY = 9.81
 """In m/s^2."""
@@ -28,23 +29,26 @@ _STIFFNESS = 100.0
 """Position gain in Nm/rad or N/m of a joint without effort limit."""
 _FULL_EFFORT_AT = 0.1
 """The error (rad or m; for velocities a part of the limit) at which a servo asks for all of the effort limit."""
+_NO_TENSOR = (0.0,) * 6
 
 
 class Load(NamedTuple):
-    """What a dof moves, in kg m^2 or kg, and the greatest torque of gravity on it, in Nm or N.
+    """What a dof moves while all other dofs are held, in kg m^2 or kg, and the greatest torque of gravity on it, in Nm or N.
 
-    ``inertia`` is moved when all other dofs are held (a diagonal entry of the mass matrix), ``free`` when those behind it are free (its
-    articulated inertia). ``weight`` is the torque of gravity at home, along -z of the world.
+    ``inertia`` is its diagonal entry of the mass matrix. ``weight`` is the torque of gravity at home, along -z of the world.
     """
 
     inertia: float
-    free: float
     gravity: float
     weight: float
 
 
-_Matrix = list[list[float]]
-"""A spatial inertia in the world, about its origin: six rows, rotation before translation."""
+class Inertia(NamedTuple):
+    """Mass in kg, mass times centre in kg m, and tensor in kg m^2 of some bodies, in the world about its origin."""
+
+    mass: float
+    moment: Vec3
+    tensor: Tensor
 
 
 def home(dof: Dof) -> float:
@@ -97,31 +101,20 @@ def loads(mechanism: Mechanism) -> dict[tuple[Id, int], Load]:
 
     Where gravity points is not known, and the bodies before the dof may have any pose: gravity acts where it turns most.
 
-    Source: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 6 (composite) and 7 (articulated inertias).
+    Source: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 6 (composite rigid bodies).
     """
     poses = home_poses(mechanism)
-    held, free = ({body: _own(mechanism.vertex(body, Body), pose) for body, pose in poses.items() if body != WORLD} for _ in range(2))
+    moved = {body: inertia_of(mechanism.vertex(body, Body), pose) for body, pose in poses.items() if body != WORLD}
     found: dict[tuple[Id, int], Load] = {}
     for body in reversed([*mechanism.depth_first()]):
         view = mechanism.parent_joint.get(body)
         if view is None:
             continue
-        frames = [*_frames(view, poses.get(view.parent, IDENTITY))]
-        for number in reversed(range(len(view.joint.dofs))):
-            dof, frame = view.joint.dofs[number], frames[number]
-            if dof.kind in (DofKind.BALL, DofKind.FREE):
-                free[body] = _zero()
-                continue
-            axis = _axis(dof, frame)
-            pushed = _times(free[body], axis)
-            alone = max(_dot(axis, pushed), 0.0) + dof.armature
-            together = max(_dot(axis, _times(held[body], axis)), 0.0) + dof.armature
-            found[view.id, number] = Load(together, alone, *_gravity(held[body], dof, frame))
-            if alone > 0.0:
-                _add(free[body], [[-a * b / alone for b in pushed] for a in pushed])
+        for number, (dof, frame) in enumerate(zip(view.joint.dofs, frames_at_home(view, poses.get(view.parent, IDENTITY)), strict=False)):
+            if dof.kind not in (DofKind.BALL, DofKind.FREE):
+                found[view.id, number] = _load(moved[body], dof, frame)
         if view.parent != WORLD:
-            _add(held[view.parent], held[body])
-            _add(free[view.parent], free[body])
+            moved[view.parent] = _together(moved[view.parent], moved[body])
     return found
 
 
@@ -131,7 +124,7 @@ def dof_of(mechanism: Mechanism, arc: RobotArc) -> tuple[Id, int]:
     return arc.target, (dof_number(view.joint, arc.role) or 0) if view else 0
 
 
-def _frames(view: JointView, parent: Pose) -> Iterator[Pose]:
+def frames_at_home(view: JointView, parent: Pose) -> Iterator[Pose]:
     """The frame in the world in which each dof of a joint moves, at home, and behind the last one that of the joint in its child."""
     frame = compose(parent, view.parent_pose)
     yield frame
@@ -148,62 +141,52 @@ def home_poses(mechanism: Mechanism) -> dict[Id, Pose]:
         if above is None:
             poses[body] = IDENTITY
             continue
-        *_, last = _frames(above, poses.get(above.parent, IDENTITY))
+        *_, last = frames_at_home(above, poses.get(above.parent, IDENTITY))
         poses[body] = compose(last, inverse(above.child_pose))
     return poses
 
 
-# ---- spatial vectors and inertias, in the world about its origin: rotation before translation ------------------------------------
+# ---- inertias, in the world about its origin -------------------------------------------------------------------------------------
 
 
-def _axis(dof: Dof, frame: Pose) -> list[float]:
-    """The motion of a dof that stands in this frame, per unit of its coordinate."""
+def motion_of(dof: Dof, frame: Pose) -> tuple[Vec3, Vec3]:
+    """The rotation and the velocity at the origin of the world, per unit of the coordinate of a dof that stands in this frame."""
     axis = rotate(frame.quat, dof.axis)
     if dof.kind is DofKind.SLIDE:
-        return [0.0, 0.0, 0.0, *axis]
-    return [*axis, *add(cross(apply(frame, dof.anchor), axis), scaled(axis, dof.pitch))]
+        return ZERO, axis
+    return axis, add(cross(apply(frame, dof.anchor), axis), scaled(axis, dof.pitch))
 
 
-def _own(body: Body, pose: Pose) -> _Matrix:
-    """The inertia of a body; none without a mass."""
+def inertia_of(body: Body, pose: Pose) -> Inertia:
+    """The inertia of a body; zero without a mass."""
     inertial = body.inertial
     if inertial is None or not inertial.mass or inertial.mass < 0.0:
-        return _zero()
+        return Inertia(0.0, ZERO, _NO_TENSOR)
     mass, (x, y, z) = inertial.mass, apply(pose, inertial.com)
-    xx, yy, zz, xy, xz, yz = rotate_tensor(pose.quat, inertial.tensor) if inertial.tensor else (0.0,) * 6
+    xx, yy, zz, xy, xz, yz = rotate_tensor(pose.quat, inertial.tensor) if inertial.tensor else _NO_TENSOR
     a, b, c = mass * x, mass * y, mass * z
-    return [
-        [xx + b * y + c * z, xy - a * y, xz - a * z, 0.0, -c, b],
-        [xy - a * y, yy + a * x + c * z, yz - b * z, c, 0.0, -a],
-        [xz - a * z, yz - b * z, zz + a * x + b * y, -b, a, 0.0],
-        [0.0, c, -b, mass, 0.0, 0.0],
-        [-c, 0.0, a, 0.0, mass, 0.0],
-        [b, -a, 0.0, 0.0, 0.0, mass],
-    ]
+    return Inertia(mass, (a, b, c), (xx + b * y + c * z, yy + a * x + c * z, zz + a * x + b * y, xy - a * y, xz - a * z, yz - b * z))
 
 
-def _gravity(moved: _Matrix, dof: Dof, frame: Pose) -> tuple[float, float]:
+def _together(one: Inertia, other: Inertia) -> Inertia:
+    """The inertia of the bodies of both."""
+    tensor: Tensor = tuple(map(operator.add, one.tensor, other.tensor))
+    return Inertia(one.mass + other.mass, add(one.moment, other.moment), tensor)
+
+
+def _load(moved: Inertia, dof: Dof, frame: Pose) -> Load:
+    """The load of a dof that stands in this frame and moves these bodies."""
+    turn, velocity = motion_of(dof, frame)
+    xx, yy, zz, xy, xz, yz = moved.tensor
+    pushed = (dot((xx, xy, xz), turn), dot((xy, yy, yz), turn), dot((xz, yz, zz), turn))
+    inertia = dot(turn, pushed) + 2.0 * dot(velocity, cross(turn, moved.moment)) + moved.mass * dot(velocity, velocity)
+    return Load(max(inertia, 0.0) + dof.armature, *_gravity(moved, dof, frame))
+
+
+def _gravity(moved: Inertia, dof: Dof, frame: Pose) -> tuple[float, float]:
     """The greatest force of gravity along a dof, wherever it points, and the size of that along -z."""
-    mass, moment = moved[3][3], (moved[2][4], moved[0][5], moved[1][3])
+    axis = rotate(frame.quat, dof.axis)
     if dof.kind is DofKind.SLIDE:
-        return mass * GRAVITY, mass * GRAVITY * abs(rotate(frame.quat, dof.axis)[2])
-    axis, anchor = rotate(frame.quat, dof.axis), apply(frame, dof.anchor)
-    lever = cross(axis, add(moment, scaled(anchor, -mass)))
+        return moved.mass * GRAVITY, moved.mass * GRAVITY * abs(axis[2])
+    lever = cross(axis, add(moved.moment, scaled(apply(frame, dof.anchor), -moved.mass)))
     return GRAVITY * math.hypot(*lever), GRAVITY * abs(lever[2])
-
-
-def _zero() -> _Matrix:
-    return [[0.0] * 6 for _ in range(6)]
-
-
-def _add(to: _Matrix, other: _Matrix) -> None:
-    for row, more in zip(to, other, strict=True):
-        row[:] = map(operator.add, row, more)
-
-
-def _times(matrix: _Matrix, vector: list[float]) -> list[float]:
-    return [_dot(row, vector) for row in matrix]
-
-
-def _dot(a: Sequence[float], b: Sequence[float]) -> float:
-    return float(sum(map(operator.mul, a, b)))
