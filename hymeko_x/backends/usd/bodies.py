@@ -18,10 +18,15 @@ from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, ro
 from hymeko_x.ir.written import clean_pose
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
     from hymeko_x.backends.usd.sheet import UsdSheet
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.values import Quat, Tensor, Vec3
+
+    Diagonal = tuple[Vec3, Quat]
+    """The principal moments of a tensor, and the rotation of their axes."""
 
 _NEAR = 1e-9
 
@@ -35,11 +40,12 @@ def write_bodies(sheet: UsdSheet) -> None:
     note_body_shapes(sheet)
     placed: set[Any] = set()
     kinematic = grounds(sheet.mechanism)
+    diagonal = _diagonal_of(sheet.mechanism)
     home = sheet.authors_group("body") or sheet.root
     for key in _parents_first(sheet.mechanism) if sheet.is_nested else [key for key, _ in sheet.mechanism.vertices(Body)]:
         spec = _place_nested(sheet, key) if sheet.is_nested else sheet.add_prim(key, home, "Xform")
         placed.add(spec.path)
-        _write_body(sheet, spec, key)
+        _write_body(sheet, spec, key, diagonal)
         if key in kinematic:
             put(spec, "physics:kinematicEnabled", T.Bool, True)
     for key, _ in sheet.mechanism.vertices(Body):
@@ -55,11 +61,11 @@ def write_bodies(sheet: UsdSheet) -> None:
         transform(spec, pose, sheet.body_scales.get(key), reset=is_inside)
 
 
-def _write_body(sheet: UsdSheet, spec: Any, key: Id) -> None:
+def _write_body(sheet: UsdSheet, spec: Any, key: Id, diagonal: Mapping[Tensor, Diagonal]) -> None:
     apply(spec, "PhysicsRigidBodyAPI")
     inertial = sheet.mechanism.vertex(key, Body).inertial
     if inertial is not None:
-        write_inertial(spec, inertial, sheet.in_prim_space(key, inertial.com), is_neutral=sheet.is_neutral)
+        _write_inertial(spec, inertial, sheet.in_prim_space(key, inertial.com), diagonal, is_neutral=sheet.is_neutral)
 
 
 def _parents_first(mechanism: Mechanism) -> list[Id]:
@@ -106,11 +112,13 @@ def _noted_pose(mechanism: Mechanism, body: Id) -> Pose | None:
 # ---- mass --------------------------------------------------------------------------------------------------------------------
 
 
+_ROWS = [[0, 3, 4], [3, 1, 5], [4, 5, 2]]
+"""The places of the numbers of a tensor in its matrix."""
 _ROUNDING = 1e-12
 """Of the largest moment: a thin rod has no other about its axis, where the rules of USD demand one above 0."""
 
 
-def write_inertial(spec: Any, inertial: Inertial, com: Vec3, *, is_neutral: bool = False) -> None:
+def _write_inertial(spec: Any, inertial: Inertial, com: Vec3, diagonal: Mapping[Tensor, Diagonal], *, is_neutral: bool) -> None:
     """Mass, centre of mass (in the prim's space), and the tensor both as principal moments and as Newton's six doubles.
 
     The neutral form is principal moments alone.
@@ -121,7 +129,7 @@ def write_inertial(spec: Any, inertial: Inertial, com: Vec3, *, is_neutral: bool
     put(spec, "physics:centerOfMass", T.Point3f, Gf.Vec3f(*com))
     if inertial.tensor is None:
         return
-    moments, quat = principal(inertial)
+    moments, quat = _diagonal_as_given(inertial) or diagonal[inertial.tensor]
     least = _ROUNDING * max(moments)
     if least > 0.0 and min(moments) >= -least:  # UsdPhysics takes three zeros for "not authored"
         put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*(max(moment, least) for moment in moments)))
@@ -132,28 +140,30 @@ def write_inertial(spec: Any, inertial: Inertial, com: Vec3, *, is_neutral: bool
     put(spec, "newton:inertia", T.DoubleArray, Vt.DoubleArray(list(inertial.tensor)))
 
 
-def principal(inertial: Inertial) -> tuple[Vec3, Quat]:
-    """Principal moments and the rotation of their axes: as they were given where they were, else computed."""
+def _diagonal_as_given(inertial: Inertial) -> Diagonal | None:
+    """The principal moments and axes that an author gave, or that a tensor without products shows; else None."""
     written, tensor = inertial.written, inertial.tensor
-    assert tensor is not None
     if written is not None and not any(written.tensor[3:]):
         return written.tensor[:3], written.frame.quat
-    if not any(tensor[3:]):
-        return tensor[:3], NO_ROTATION
-    return _eigen(tensor)
+    return (tensor[:3], NO_ROTATION) if tensor is not None and not any(tensor[3:]) else None
 
 
-def _eigen(tensor: Tensor) -> tuple[Vec3, Quat]:
+def _diagonal_of(mechanism: Mechanism) -> dict[Tensor, Diagonal]:
+    """The principal moments and axes of all other tensors, computed at once: one call for each takes 8 % of a conversion."""
+    bodies = [body.inertial for _, body in mechanism.vertices(Body) if body.inertial is not None]
+    tensors = {inertial.tensor for inertial in bodies if inertial.tensor is not None and _diagonal_as_given(inertial) is None}
+    finite = [tensor for tensor in tensors if all(map(math.isfinite, tensor))]
+    return {tensor: (tensor[:3], NO_ROTATION) for tensor in tensors} | dict(zip(finite, _eigen(finite), strict=True))
+
+
+def _eigen(tensors: list[Tensor]) -> Iterator[Diagonal]:
+    if not tensors:
+        return
     import numpy as np
 
-    xx, yy, zz, xy, xz, yz = tensor
-    matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    if not np.isfinite(matrix).all():
-        return (xx, yy, zz), NO_ROTATION
-    moments, axes = np.linalg.eigh(matrix)
-    if np.linalg.det(axes) < 0.0:
-        axes[:, 0] = -axes[:, 0]
-    turn = Gf.Matrix3d(*axes.T.ravel().tolist()).ExtractRotation().GetQuat()
-    x, y, z = turn.GetImaginary()
-    a, b, c = moments.tolist()
-    return (a, b, c), (turn.GetReal(), x, y, z)
+    moments, axes = np.linalg.eigh(np.array(tensors)[:, _ROWS])
+    axes[np.linalg.det(axes) < 0.0, :, 0] *= -1.0
+    for (a, b, c), rows in zip(moments.tolist(), axes.transpose(0, 2, 1).reshape(-1, 9).tolist(), strict=True):
+        turn = Gf.Matrix3d(*rows).ExtractRotation().GetQuat()
+        x, y, z = turn.GetImaginary()
+        yield (a, b, c), (turn.GetReal(), x, y, z)

@@ -27,6 +27,8 @@ def restore_extras(sheet: UsdSheet, report: Report) -> None:
         if extra.path == _STAGE and key == ROOT:
             _restore_stage(sheet, extra, report)
     blocks = [(key, extra) for key, extra in found if not (extra.path == _STAGE and key == ROOT)]
+    if not blocks:
+        return
     for (key, extra), parsed in zip(blocks, _parsed(blocks, report), strict=True):
         path = _target(sheet, key, extra.path)
         if path is not None and parsed is not None:
