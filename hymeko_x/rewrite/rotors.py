@@ -40,7 +40,7 @@ def give_light_dofs_rotors(mechanism: Mechanism, context: Context) -> Mechanism:
     Source: MuJoCo's documentation, Modeling, Numerical stability: armature makes light joints stable.
     """
     light: dict[Id, list[int]] = {}
-    for (joint, number), inertia in free_inertias(mechanism).items():
+    for (joint, number), inertia in articulated_inertias(mechanism).items():
         if inertia < _LIGHT:
             light.setdefault(joint, []).append(number)
     if not light or _has_unknown_masses(mechanism):
@@ -62,15 +62,18 @@ def _has_unknown_masses(mechanism: Mechanism) -> bool:
     return native_format(mechanism) is not None and any(body.inertial is None for _, body in mechanism.vertices(Body))
 
 
-# ---- articulated inertias: six rows in the world about its origin, rotation before translation ---------------------------------------
+# ---- articulated inertias --------------------------------------------------------------------------------------------------------
 
 _Matrix = list[list[float]]
+"""A spatial inertia in the world, about its origin: six rows, rotation before translation."""
 
 
-def free_inertias(mechanism: Mechanism) -> dict[tuple[Id, int], float]:
-    """What each hinge, slide and screw moves at home while the dofs behind it are free, in kg m^2 or kg, by joint and number.
+def articulated_inertias(mechanism: Mechanism) -> dict[tuple[Id, int], float]:
+    """The articulated inertia of each hinge, slide and screw at home, in kg m^2 or kg, by joint and number.
 
-    Source: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7 (articulated inertias).
+    It is what a dof moves while the dofs behind it are free.
+
+    Source: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7.
     """
     poses = home_poses(mechanism)
     moved = {body: _matrix_of(inertia_of(mechanism.vertex(body, Body), pose)) for body, pose in poses.items() if body != WORLD}
@@ -92,7 +95,7 @@ def free_inertias(mechanism: Mechanism) -> dict[tuple[Id, int], float]:
 
 
 def _release(moved: _Matrix, dof: Dof, frame: Pose) -> float:
-    """The inertia that a dof in this frame moves, which is taken from what is moved by the dofs before it."""
+    """The inertia that a dof in this frame moves; what moves freely along it is taken out of the matrix, for the dofs before it."""
     axis = [*itertools.chain(*motion_of(dof, frame))]
     pushed = [_dot(row, axis) for row in moved]
     inertia = max(_dot(axis, pushed), 0.0) + dof.armature

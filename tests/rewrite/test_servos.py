@@ -12,7 +12,7 @@ import pytest
 import hymeko_x as hx
 from hymeko_x.ir.parts import Limits
 from hymeko_x.ir.values import Z
-from hymeko_x.rewrite.rotors import free_inertias
+from hymeko_x.rewrite.rotors import articulated_inertias
 from hymeko_x.rewrite.servos import Load, gains, home, loads
 from tests.robots import hinge
 
@@ -29,7 +29,7 @@ def test_loads_are_those_of_the_mass_matrix_and_of_gravity(tmp_path: Path) -> No
         path = tmp_path / "robot.xml"
         hx.dump(robot, path, base="fixed", target="mujoco")
         model = mujoco.MjModel.from_xml_path(str(path))
-        found, free = loads(robot), free_inertias(robot)
+        found, free = loads(robot), articulated_inertias(robot)
         assert len(found) == len(free) == model.nv
         for (joint, number), load in found.items():
             dof = robot.joints[joint].joint.dofs[number]
