@@ -14,8 +14,7 @@ from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import native_format
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, DofKind
-from hymeko_x.ir.values import IDENTITY
-from hymeko_x.rewrite.servos import frames_at_home, home_poses, inertia_of, motion_of
+from hymeko_x.rewrite.servos import home_poses, inertia_of, joints_inward, motion_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -78,19 +77,15 @@ def articulated_inertias(mechanism: Mechanism) -> dict[tuple[Id, int], float]:
     poses = home_poses(mechanism)
     moved = {body: _matrix_of(inertia_of(mechanism.vertex(body, Body), pose)) for body, pose in poses.items() if body != WORLD}
     found: dict[tuple[Id, int], float] = {}
-    for body in reversed([*mechanism.depth_first()]):
-        view = mechanism.parent_joint.get(body)
-        if view is None:
-            continue
-        frames = [*frames_at_home(view, poses.get(view.parent, IDENTITY))]
+    for view, frames in joints_inward(mechanism, poses):
         for number in reversed(range(len(view.joint.dofs))):
             dof = view.joint.dofs[number]
             if dof.kind in (DofKind.BALL, DofKind.FREE):
-                moved[body] = [[0.0] * 6 for _ in range(6)]
+                moved[view.child] = [[0.0] * 6 for _ in range(6)]
             else:
-                found[view.id, number] = _release(moved[body], dof, frames[number])
+                found[view.id, number] = _release(moved[view.child], dof, frames[number])
         if view.parent != WORLD:
-            _add(moved[view.parent], moved[body])
+            _add(moved[view.parent], moved[view.child])
     return found
 
 

@@ -12,7 +12,7 @@ from hymeko_x.ir.parts import Body, DofKind
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, add, apply, compose, cross, dot, inverse, rotate, rotate_tensor, scaled
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotArc
     from hymeko_x.ir.parts import Dof, Parameters
@@ -106,15 +106,12 @@ def loads(mechanism: Mechanism) -> dict[tuple[Id, int], Load]:
     poses = home_poses(mechanism)
     moved = {body: inertia_of(mechanism.vertex(body, Body), pose) for body, pose in poses.items() if body != WORLD}
     found: dict[tuple[Id, int], Load] = {}
-    for body in reversed([*mechanism.depth_first()]):
-        view = mechanism.parent_joint.get(body)
-        if view is None:
-            continue
-        for number, (dof, frame) in enumerate(zip(view.joint.dofs, frames_at_home(view, poses.get(view.parent, IDENTITY)), strict=False)):
+    for view, frames in joints_inward(mechanism, poses):
+        for number, dof in enumerate(view.joint.dofs):
             if dof.kind not in (DofKind.BALL, DofKind.FREE):
-                found[view.id, number] = _load(moved[body], dof, frame)
+                found[view.id, number] = _load(moved[view.child], dof, frames[number])
         if view.parent != WORLD:
-            moved[view.parent] = _together(moved[view.parent], moved[body])
+            moved[view.parent] = _together(moved[view.parent], moved[view.child])
     return found
 
 
@@ -124,7 +121,15 @@ def dof_of(mechanism: Mechanism, arc: RobotArc) -> tuple[Id, int]:
     return arc.target, (dof_number(view.joint, arc.role) or 0) if view else 0
 
 
-def frames_at_home(view: JointView, parent: Pose) -> Iterator[Pose]:
+def joints_inward(mechanism: Mechanism, poses: Mapping[Id, Pose]) -> Iterator[tuple[JointView, list[Pose]]]:
+    """Every joint of the tree, those further out first, with the frames of its dofs where the bodies have these poses."""
+    for body in reversed([*mechanism.depth_first()]):
+        view = mechanism.parent_joint.get(body)
+        if view is not None:
+            yield view, [*_frames(view, poses.get(view.parent, IDENTITY))]
+
+
+def _frames(view: JointView, parent: Pose) -> Iterator[Pose]:
     """The frame in the world in which each dof of a joint moves, at home, and behind the last one that of the joint in its child."""
     frame = compose(parent, view.parent_pose)
     yield frame
@@ -141,7 +146,7 @@ def home_poses(mechanism: Mechanism) -> dict[Id, Pose]:
         if above is None:
             poses[body] = IDENTITY
             continue
-        *_, last = frames_at_home(above, poses.get(above.parent, IDENTITY))
+        *_, last = _frames(above, poses.get(above.parent, IDENTITY))
         poses[body] = compose(last, inverse(above.child_pose))
     return poses
 

@@ -150,8 +150,8 @@ def _diagonal_as_given(inertial: Inertial) -> Diagonal | None:
 
 def _diagonal_of(mechanism: Mechanism) -> dict[Tensor, Diagonal]:
     """The principal moments and axes of all other tensors, computed at once: one call for each takes up to 8 % of a conversion."""
-    bodies = [body.inertial for _, body in mechanism.vertices(Body) if body.inertial is not None]
-    tensors = {inertial.tensor for inertial in bodies if inertial.tensor is not None and _diagonal_as_given(inertial) is None}
+    inertials = [body.inertial for _, body in mechanism.vertices(Body) if body.inertial is not None]
+    tensors = {inertial.tensor for inertial in inertials if inertial.tensor is not None and _diagonal_as_given(inertial) is None}
     finite = [tensor for tensor in tensors if all(map(math.isfinite, tensor))]
     return {tensor: (tensor[:3], NO_ROTATION) for tensor in tensors} | dict(zip(finite, _eigen(finite), strict=True))
 
