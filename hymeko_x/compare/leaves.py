@@ -5,22 +5,19 @@ The ledger and the residue are made from the same leaves, which are computed onc
 
 from __future__ import annotations
 
-from math import copysign
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from msgspec import NODEFAULT, Struct
 from msgspec.structs import replace
 
-from hymeko_x.ir.fields import attributes_of, identical, layout_of
+from hymeko_x.ir.fields import attributes_of, have_same_bytes, identical, layout_of
 from hymeko_x.ir.graph import Edge
-from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.values import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.ir.fields import Layout
-    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+    from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
 
 Path = tuple[str | int, ...]
 """Where in a part a value stands: names of fields and places in tuples (``("dofs", 0, "limits", "upper")``)."""
@@ -69,56 +66,43 @@ def leaves_again(other: Mechanism, a: Mechanism, b: Mechanism, between: Mapping[
 def leaves_of(a: object, b: object) -> Leaves:
     """The leaves in which two values differ, in the order of their fields. Depth is that of the parts, which is small."""
     found: Leaves = []
-    if a is not b:
-        _collect(a, b, (), NODEFAULT, True, found)
+    _collect(a, b, (), NODEFAULT, True, found)
     return found
 
 
 def _collect(a: object, b: object, path: Path, default: object, counts: bool, found: Leaves) -> None:
-    """What differs between two values that are two objects."""
+    """What differs between two values. Nearly all are the same, which is seen at once."""
+    if a is b:
+        return
     kind = type(a)
     layout = layout_of(kind) if kind is type(b) else None
     if layout is None:
         if kind is tuple and _are_alike(a, b):
             for place, (before, after) in enumerate(zip(a, b, strict=True)):  # type: ignore[call-overload]
-                if before is not after:
-                    _collect(before, after, (*path, place), NODEFAULT, counts, found)
+                _collect(before, after, (*path, place), NODEFAULT, counts, found)
         elif not identical(a, b):
             found.append(Leaf(path, a, b, default, counts))
+    elif have_same_bytes(a, b):
+        return
     elif kind is Pose:
         _collect_pose(a, b, path, counts, found)  # type: ignore[arg-type]
     elif kind is Edge and len(a.arcs) == len(b.arcs):  # type: ignore[attr-defined]
         _collect_edge(a, b, path, counts, found)  # type: ignore[arg-type]
     else:
-        _collect_fields(layout, a, b, path, counts, found)
-
-
-def _collect_fields(layout: Layout, a: object, b: object, path: Path, counts: bool, found: Leaves) -> None:
-    """The same for two parts of a kind. Nearly all fields are the same, and most of them numbers: those are seen at once."""
-    for item, before, after in zip(layout.attributes, layout.values(a), layout.values(b), strict=True):
-        if before is after:
-            continue
-        kind = type(before)
-        if kind is float:
-            if before == after and (before or copysign(1.0, before) == copysign(1.0, after)):
-                continue
-        elif kind is Id:
-            if before == after:
-                continue
-        elif kind is tuple and before and type(before[0]) is float and before == after and 0.0 not in before:
-            continue
-        name, default, compare = item
-        _collect(before, after, (*path, name), default, counts and compare, found)
+        for (name, own, compare), before, after in zip(layout.attributes, layout.values(a), layout.values(b), strict=True):
+            if before is not after and not have_same_bytes(before, after):
+                _collect(before, after, (*path, name), own, counts and compare, found)
 
 
 def _collect_edge(a: RobotEdge, b: RobotEdge, path: Path, counts: bool, found: Leaves) -> None:
     """The same for two edges with as many arcs: nearly all lead to the same elements."""
-    if a.data is not b.data:
-        _collect(a.data, b.data, (*path, "data"), NODEFAULT, counts, found)
+    _collect(a.data, b.data, (*path, "data"), NODEFAULT, counts, found)
+    if have_same_bytes(a.arcs, b.arcs):
+        return
     for place, (x, y) in enumerate(zip(a.arcs, b.arcs, strict=True)):
         if x.target != y.target or x.sign != y.sign or x.role != y.role:
             _collect(x, y, (*path, "arcs", place), NODEFAULT, counts, found)
-        elif x.weight is not y.weight:
+        else:
             _collect(x.weight, y.weight, (*path, "arcs", place, "weight"), None, counts, found)
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import struct
 from functools import cache
 from math import copysign
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from msgspec import NODEFAULT, Struct
+from msgspec.msgpack import Encoder
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -92,6 +92,20 @@ layout_of: Callable[[Any], Layout | None] = cache(_layout_of)
 """The fields of a part; None for every other type."""
 
 
+_bytes_of = Encoder().encode
+
+
+def have_same_bytes(a: object, b: object) -> bool:
+    """Whether two values of a type are the same to the last bit, as a writer of bytes sees at once; if not, they still may be.
+
+    Floats are written with all their bits, and the names of fields as well. What cannot be written is left to :func:`identical`.
+    """
+    try:
+        return _bytes_of(a) == _bytes_of(b)
+    except (TypeError, ValueError, OverflowError):
+        return False
+
+
 def identical(a: object, b: object) -> bool:
     """Whether two values are the same to the last bit, notations and the sign of zero included."""
     if a is b:
@@ -111,7 +125,7 @@ def identical(a: object, b: object) -> bool:
 
 
 def _are_identical(a: tuple[object, ...], b: tuple[object, ...]) -> bool:
-    if len(a) > _MANY and type(a[0]) in NUMBERS and a == b and _have_same_bytes(a, b):
+    if len(a) > _MANY and have_same_bytes(a, b):
         return True
     for x, y in zip(a, b, strict=True):
         if x is y:
@@ -129,12 +143,3 @@ def _are_identical(a: tuple[object, ...], b: tuple[object, ...]) -> bool:
         elif not identical(x, y):
             return False
     return True
-
-
-def _have_same_bytes(a: tuple[object, ...], b: tuple[object, ...]) -> bool:
-    """Whether two equal rows are numbers, and their zeros have the same signs; what is no number is left to the caller."""
-    row = struct.Struct(f"{len(a)}d")
-    try:
-        return row.pack(*a) == row.pack(*b)
-    except struct.error:
-        return False
