@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeGuard, TypeVar
 
 from hymeko_x.ir.values import are_numbers, number_text, numbers_text
 from hymeko_x.language.syntax import (
@@ -28,7 +28,7 @@ from hymeko_x.language.syntax import (
 from hymeko_x.language.terminals import KEYWORDS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Sequence
 
 
 class TextBlock(NamedTuple):
@@ -197,20 +197,22 @@ def _comment_lines(comment: Comment, indent: str) -> list[str]:
 
 def _broken(items: tuple[Piece, ...], width: int) -> list[Piece]:
     """The items of a block for several lines: nodes each on its own, runs of fields and arcs filled up to the width."""
+    if _are_texts(items):
+        return _filled(items, width)
     parts: list[Piece] = []
     run: list[Piece] = []
     for item, following in _with_next(items):
-        if isinstance(item, _ON_LINES_OF_THEIR_OWN):
-            parts.extend(_filled(run, width, following if isinstance(item, Comment) else item))
-            run = []
-            parts.append(item)
-        else:
+        if not isinstance(item, _ON_LINES_OF_THEIR_OWN):
             run.append(item)
-    parts.extend(_filled(run, width))
-    return parts
+            continue
+        if run:
+            parts += _filled(run, width, following if isinstance(item, Comment) else item)
+            run = []
+        parts.append(item)
+    return parts + _filled(run, width)
 
 
-def _filled(items: list[Piece], width: int, following: Piece | None = None) -> list[Piece]:
+def _filled(items: Sequence[Piece], width: int, following: Piece | None = None) -> list[Piece]:
     """Lines of items, each as full as the width allows; ``following`` is the piece behind them."""
     lines: list[Piece] = []
     line = ""
@@ -223,13 +225,17 @@ def _filled(items: list[Piece], width: int, following: Piece | None = None) -> l
     return [*lines, line] if line else lines
 
 
-def _texts(items: Sequence[Piece], behind: Piece | None = None) -> Iterator[str]:
+def _are_texts(items: Iterable[Piece]) -> TypeGuard[Sequence[str]]:
+    """Whether all items are texts already, which need no comma."""
+    return {*map(type, items)} <= {str}
+
+
+def _texts(items: Sequence[Piece], behind: Piece | None = None) -> Iterable[str]:
     """Each item in one line, with the comma that the grammar needs before the next one."""
-    for item, following in _with_next(items, behind):
-        if isinstance(item, str):
-            yield item
-        else:
-            yield _text(item) + "," * (following is not None and _needs_comma(item, following))
+    if _are_texts(items):
+        return items
+    pairs = _with_next(items, behind)
+    return (_text(item) + "," * (following is not None and _needs_comma(item, following)) for item, following in pairs)
 
 
 def _with_next(items: Sequence[P], behind: P | None = None) -> Iterable[tuple[P, P | None]]:

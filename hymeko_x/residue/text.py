@@ -14,7 +14,7 @@ from msgspec.structs import replace
 
 from hymeko_x.compare.leaves import TURN
 from hymeko_x.ir.graph import Edge
-from hymeko_x.ir.values import Pose
+from hymeko_x.ir.values import Pose, numbers_text
 from hymeko_x.language.printer import TextBlock, print_block, print_field, print_item, print_name
 from hymeko_x.language.syntax import ArcItem, Comment, Ref
 from hymeko_x.language.values import encoded, encoded_turn, given_fields, name_ref
@@ -84,7 +84,7 @@ def print_residue(residue: Residue) -> str:
             items += [Comment(title), TextBlock(name, found)]
     if residue.layout is not None:
         items += [Comment("the order of all elements in the source's text")]
-        items += [_id_list("layout", residue.layout), _id_list("unplaced", residue.unplaced)]
+        items += [_listed("layout", map(_id_text, residue.layout)), _listed("unplaced", map(_id_text, residue.unplaced))]
     return print_block(TextBlock("kept : residue", tuple(items)))
 
 
@@ -100,7 +100,7 @@ def _grouped(entries: Iterable[tuple[Id, str]]) -> Iterator[TextBlock]:
     for key, found in fields.items():
         groups[key.kind, *found].append(key.name)
     for (kind, *alike), names in groups.items():
-        yield TextBlock(print_name(kind), (print_field("of", tuple(map(name_ref, names))), *alike))
+        yield TextBlock(print_name(kind), (_listed("of", map(print_name, names)), *alike))
 
 
 def _by_kind(entries: Iterable[tuple[str, str]]) -> Iterator[TextBlock]:
@@ -112,13 +112,17 @@ def _by_kind(entries: Iterable[tuple[str, str]]) -> Iterator[TextBlock]:
         yield TextBlock(print_name(kind), tuple(found))
 
 
-def _refs(keys: Iterable[Id]) -> tuple[Ref, ...]:
-    return tuple([name_ref(key.name) for key in keys])
+def _listed(name: str, texts: Iterable[str]) -> str:
+    """A field with a list."""
+    return f"{name} [{' '.join(texts)}]"
 
 
-def _id_list(name: str, ids: Iterable[Id]) -> str:
-    """A field with a list of elements, by kind and name."""
-    return f"{name} [{' '.join([f'{print_name(kind)}.{print_name(own)}' for kind, own in ids])}]"
+def _names_of(ids: Iterable[Id]) -> list[str]:
+    return [print_name(key.name) for key in ids]
+
+
+def _id_text(key: Id) -> str:
+    return f"{print_name(key.kind)}.{print_name(key.name)}"
 
 
 # ---- entries -------------------------------------------------------------------------------------------------------------
@@ -129,7 +133,7 @@ def _names(residue: Residue) -> Iterator[TextBlock]:
 
 
 def _chain(fold: Fold) -> TextBlock:
-    return TextBlock(print_name(fold.joint.name), (print_field("joints", _refs(fold.chain)), print_field("between", _refs(fold.between))))
+    return TextBlock(print_name(fold.joint.name), (_listed("joints", _names_of(fold.chain)), _listed("between", _names_of(fold.between))))
 
 
 def _change(change: Change) -> str:
@@ -171,13 +175,13 @@ def _arc_text(arc: RobotArc) -> str:
 
 
 def _run(run: Run) -> str:
-    names = _refs(run.elements)
-    return print_field("head", (0.0, *names)) if run.after is None else print_field(run.after.name, names)
+    names = _names_of(run.elements)
+    return _listed("head", ["0", *names]) if run.after is None else _listed(print_name(run.after.name), names)
 
 
 def _landmark(landmark: Landmark) -> str:
-    beside = [Ref((key.kind, key.name)) for key in landmark.beside]
-    return print_field(landmark.element.name, (*beside, *landmark.numbers))
+    numbers = [numbers_text(landmark.numbers)] if landmark.numbers else []
+    return _listed(print_name(landmark.element.name), [*map(_id_text, landmark.beside), *numbers])
 
 
 # ---- side tables -------------------------------------------------------------------------------------------------------------
