@@ -8,6 +8,7 @@ format writes it back digit by digit; comparisons ignore it.
 from __future__ import annotations
 
 import math
+import re
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -361,17 +362,23 @@ def number_text(value: float) -> str:
     return text.replace("e-0", "e-").replace("e+", "e") if "e" in text else text.removesuffix(".0")
 
 
+_WITH_EXPONENT = re.compile(r"(?<!\d)0\.0000([1-9])(\d*)")
+"""A number from 1e-5 to 1e-4 as a writer of JSON has it; Python writes it with an exponent."""
+
+
 def numbers_text(values: tuple[float, ...]) -> str:
     """Numbers separated by blanks, each as :func:`number_text` writes it.
 
-    A writer of JSON finds the digits in a tenth of the time; where it would not write them as Python does, Python is asked.
+    A writer of JSON finds the digits in a tenth of the time; where it cannot represent a value, Python is asked.
     """
     try:
         text = encode(values).decode()
     except TypeError:  # a number that is no plain one of Python
         return " ".join(map(number_text, values))
-    if "0.0000" in text or (text.count(".") != len(values) and ("null" in text or not are_numbers(values))):
+    if text.count(".") != len(values) and ("null" in text or not are_numbers(values)):
         return " ".join(map(number_text, values))
+    if "0.0000" in text:
+        text = _WITH_EXPONENT.sub(lambda found: f"{found[1]}.{found[2]}e-5" if found[2] else f"{found[1]}e-5", text)
     return text[1:-1].replace(".0,", " ").replace(",", " ").removesuffix(".0")
 
 

@@ -238,6 +238,10 @@ def test_numbers_stand_with_blanks_between_them() -> None:
     assert numbers_text((1.0, -0.5, 0.0)) == "1 -0.5 0"
 
 
+def test_small_numbers_have_an_exponent_from_the_same_size_on() -> None:
+    assert numbers_text((1e-4, 1e-5, -1.25e-5, 9.5e-6, 10.00002)) == "0.0001 1e-5 -1.25e-5 9.5e-6 10.00002"
+
+
 @given(st.lists(st.floats() | st.integers(-(10**20), 10**20) | st.sampled_from([-0.0, 1e-5, 9.999e-5, 1e-4, 1e15, 1e16, 5e-324, True])))
 def test_several_numbers_are_said_as_each_of_them_is(values: list[float]) -> None:
     assert numbers_text(tuple(values)) == " ".join(map(number_text, values))
