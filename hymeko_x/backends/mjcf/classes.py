@@ -10,6 +10,7 @@ it did not have, so that MuJoCo compiles the same model.
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from operator import itemgetter
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -120,12 +121,12 @@ def _row(element: Tag) -> Row:
 def _share_among_most(tag: str, around: str, group: list[Tag], defaults: Defaults) -> None:
     """An attribute that most elements have goes into the class that all have anyway; the others have their own."""
     texts: dict[str, dict[str, int]] = {}
+    given = _SHARED[tag] - _OWN
     for element in group:
-        for name, text in _row(element):
-            if name in _OWN or (name, text) == _USUAL_AXIS:
-                continue
-            counts = texts.setdefault(name, {})
-            counts[text] = counts.get(text, 0) + 1
+        for name, text in element.attributes.items():
+            if name in given and (name, text) != _USUAL_AXIS:
+                counts = texts.setdefault(name, {})
+                counts[text] = counts.get(text, 0) + 1
     own = {}
     for name, counts in texts.items():
         text, uses = max(counts.items(), key=itemgetter(1))
@@ -208,18 +209,21 @@ def _reasons(element: Tag) -> Row:
 def settle(sheet: MjcfSheet, place: int) -> None:
     """What all elements of the written document have in common: the classes at their place behind the settings, and <compiler>."""
     tags = _elements(sheet.root)
-    compiler = next(tag for tag in tags if tag.name == "compiler")
+    by_name: dict[str, list[Tag]] = defaultdict(list)
+    for tag in tags:
+        by_name[tag.name].append(tag)
+    compiler = by_name["compiler"][0]
     if any("euler" in tag.attributes for tag in tags):
         compiler.attributes["eulerseq"] = sheet.settings.eulerseq
-    _settle_folders(tags, compiler)
-    _write_defaults(sheet, tags, place)
+    _settle_folders(by_name, compiler)
+    tags = [tag for tag in tags if tag.owner is not None]
+    _write_defaults(sheet, tags, place, massless=_need_no_mass(sheet, by_name["body"]))
 
 
-def _write_defaults(sheet: MjcfSheet, every: list[Tag], place: int) -> None:
+def _write_defaults(sheet: MjcfSheet, tags: list[Tag], place: int, *, massless: bool) -> None:
     """<default> with the classes of the elements."""
-    tags = [tag for tag in every if tag.owner is not None]
     roles = {tag.attributes.get("class") for tag in tags if tag.name == "geom"}
-    shared = {(MAIN, "geom"): dict(_MASSLESS)} if _need_no_mass(sheet, every) else {}
+    shared = {(MAIN, "geom"): dict(_MASSLESS)} if massless else {}
     shared |= {(role, "geom"): dict(attributes) for role, attributes in _ROLES.items() if role in roles}
     inside: dict[str, list[str]] = {MAIN: [role for role in _ROLES if role in roles]}
     for found in shared_attributes(tags).classes:
@@ -230,10 +234,10 @@ def _write_defaults(sheet: MjcfSheet, every: list[Tag], place: int) -> None:
         sheet.root.children[place:place] = ["", _class_tag(MAIN, {}, shared, inside)]
 
 
-def _need_no_mass(sheet: MjcfSheet, tags: list[Tag]) -> bool:
+def _need_no_mass(sheet: MjcfSheet, bodies: list[Tag]) -> bool:
     """Whether geoms have to be massless: MuJoCo would compute a mass from them, or the robot gives their density as 0."""
     is_given = any(shape.density == 0 for _, shape, _ in sheet.mechanism.edges(Shape))
-    return is_given or any(tag.name == "body" and _has_geoms_alone(tag) for tag in tags)
+    return is_given or any(map(_has_geoms_alone, bodies))
 
 
 def _has_geoms_alone(body: Tag) -> bool:
@@ -242,10 +246,10 @@ def _has_geoms_alone(body: Tag) -> bool:
     return "geom" in kinds and "inertial" not in kinds
 
 
-def _settle_folders(every: list[Tag], compiler: Tag) -> None:
+def _settle_folders(by_name: Mapping[str, list[Tag]], compiler: Tag) -> None:
     """<compiler> names the folder of all meshes, and that of all textures, where there are three or more."""
     for word, kind in (("meshdir", "mesh"), ("texturedir", "texture")):
-        tags = [tag for tag in every if tag.name == kind and "file" in tag.attributes]
+        tags = [tag for tag in by_name.get(kind, ()) if "file" in tag.attributes]
         folders = {tag.attributes["file"].rpartition("/")[0] for tag in tags}
         folder = next(iter(folders)) if len(folders) == 1 and len(tags) >= _FEWEST_FILES else ""
         if folder:
