@@ -98,9 +98,14 @@ def _agree_in_poses(image: Mechanism, source: Mechanism) -> bool:
             return False
         if not (_alike(view.parent_pose, other.parent_pose) and _alike(view.child_pose, other.child_pose)):
             return False
-        if [displacement(dof, -dof.ref) for dof in view.joint.dofs] != [displacement(dof, -dof.ref) for dof in other.joint.dofs]:
+        if _displacements(view) != _displacements(other):
             return False
     return True
+
+
+def _displacements(view: JointView) -> dict[int, Pose]:
+    """How far the dofs move the body where their coordinates are zero, by their numbers; those that start there do not."""
+    return {number: displacement(dof, -dof.ref) for number, dof in enumerate(view.joint.dofs) if dof.ref}
 
 
 def _alike(a: Pose, b: Pose) -> bool:

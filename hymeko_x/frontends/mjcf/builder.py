@@ -124,21 +124,23 @@ class MjcfBuilder(Builder):
                     found[group.key] = inherited
                     continue
                 value = found[group.key] = group.read(merged, settings)
-                touched = [name for name in group.names if name in own]
+                touched = {name: own[name] for name in group.names if name in own}
                 taken += touched
                 if touched and (always or not (group.exact or self._is_written_again(group, value, touched, base, own))):
-                    for name in touched:
-                        self.note(key, attribute(name, prefix), own[name])
+                    for name, text in touched.items():
+                        self.note(key, attribute(name, prefix), text)
         except BadAttribute as error:
             raise self.bad(element, error, merged) from error
         for name in taken:
             own.pop(name, None)
         return found
 
-    def _is_written_again(self, group: Group, value: Any, names: list[str], base: Mapping[str, str], own: Mapping[str, str]) -> bool:
-        """Whether printing a value gives attributes of the same meaning as those that it was read from; ``names`` are those of its own."""
+    def _is_written_again(
+        self, group: Group, value: Any, given: Mapping[str, str], base: Mapping[str, str], own: Mapping[str, str]
+    ) -> bool:
+        """Whether printing a value gives attributes of the same meaning as those that it was read from; ``given`` are those of its own."""
         written = group.write(value, self.settings)
-        if written.keys() == {*names} and all(_are_same_numbers(written[name], own[name]) for name in names):
+        if written == given or (written.keys() == given.keys() and all(_are_same_numbers(written[name], given[name]) for name in given)):
             return True
         merged = merge(base, own)
         context = {name: merged[name] for name in group.needs if name in merged}
