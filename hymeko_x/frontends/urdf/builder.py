@@ -17,6 +17,8 @@ from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, Pose, pose, pose_fro
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from hymeko_x.diagnostics import Code, Origin, Report
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.ir.notations import Notation
@@ -202,21 +204,41 @@ def take_numbers(node: Node, attribute: str, count: int, builder: UrdfBuilder, *
         del node.attributes[attribute]
         return numbers
     expected = "one finite number" if count == 1 else f"{count} finite numbers separated by blanks"
-    is_template = "${" in text or "$(" in text
-    builder.report.error(
-        codes.LEFTOVER_TEMPLATE if is_template else codes.BAD_NUMBER,
-        f"{node.subject}: <{node.tag} {attribute}> is '{shortened(text)}', expected {expected}; {instead}, and the text is kept as written",
-        node.origin,
-        element=node.element,
-        hint="expand the file with xacro first" if is_template else "",
-    )
+    _report_bad_number(node, attribute, text, builder, f"expected {expected}; {instead}")
     return None
+
+
+def take_each_number(node: Node, attributes: Iterable[str], builder: UrdfBuilder, *, instead: str) -> list[float | None]:
+    """The one number of each of these attributes; None where it is missing or bad. See :func:`take_numbers`."""
+    found: list[float | None] = []
+    there = node.attributes
+    for attribute in attributes:
+        text = there.get(attribute)
+        numbers = read_numbers(text) if text is not None else None
+        if numbers is not None and len(numbers) == 1:
+            del there[attribute]
+            found.append(numbers[0])
+            continue
+        found.append(None)
+        if text is not None:
+            _report_bad_number(node, attribute, text, builder, f"expected one finite number; {instead}")
+    return found
 
 
 def take_number(node: Node, attribute: str, builder: UrdfBuilder, *, instead: str) -> float | None:
     """The one number of an attribute; None when it is missing or bad. See :func:`take_numbers`."""
-    numbers = take_numbers(node, attribute, 1, builder, instead=instead)
-    return None if numbers is None else numbers[0]
+    return take_each_number(node, (attribute,), builder, instead=instead)[0]
+
+
+def _report_bad_number(node: Node, attribute: str, text: str, builder: UrdfBuilder, words: str) -> None:
+    is_template = "${" in text or "$(" in text
+    builder.report.error(
+        codes.LEFTOVER_TEMPLATE if is_template else codes.BAD_NUMBER,
+        f"{node.subject}: <{node.tag} {attribute}> is '{shortened(text)}', {words}, and the text is kept as written",
+        node.origin,
+        element=node.element,
+        hint="expand the file with xacro first" if is_template else "",
+    )
 
 
 def shortened(text: str, limit: int = 60) -> str:

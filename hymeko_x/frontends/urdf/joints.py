@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
-from hymeko_x.frontends.urdf.builder import read_origin, shortened, take_name, take_number, take_numbers
+from hymeko_x.frontends.urdf.builder import read_origin, shortened, take_each_number, take_name, take_numbers
 from hymeko_x.ir.mechanism import ROOT, WORLD, coupling_edge, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Calibration, Dof, DofKind, Joint, Limits, Safety
 from hymeko_x.ir.values import Written, X, plane_axes, unit
@@ -17,6 +17,8 @@ from hymeko_x.xml.text import attributes_text
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from hymeko_x.formats.urdf import JointType
     from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.mechanism import Id
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
     from hymeko_x.xml.tree import Node
 
 _SINGLE = ((DofKind.HINGE,), (DofKind.SLIDE,))
+_BOUNDS = ("lower", "upper")
+_RATES = ("velocity", "effort", "acceleration", "jerk")
 
 
 def read_joints(root: Node, builder: UrdfBuilder) -> None:
@@ -168,20 +172,21 @@ def _read_dynamics(joint: Node, key: Id, builder: UrdfBuilder) -> tuple[float, f
     if node is None:
         builder.follow(key, notations.DYNAMICS, follows=False)
         return 0.0, 0.0
-    damping, friction = [_usually(0.0, node, name, key, builder) for name in ("damping", "friction")]
+    damping, friction = _usually(0.0, node, ("damping", "friction"), key, builder)
     if damping == friction == 0.0:
         builder.follow(key, notations.DYNAMICS, follows=True)
     return damping, friction
 
 
-def _usually(default: float, node: Node, name: str, key: Id, builder: UrdfBuilder) -> float:
-    """The number of an attribute, its default value where it is missing or bad."""
-    is_missing = name not in node.attributes
-    found = None if is_missing else take_number(node, name, builder, instead=f"{default:g} is used")
-    value = default if found is None else found
-    if value == default:
-        builder.follow(key, notations.without(name), follows=is_missing)
-    return value
+def _usually(default: float, node: Node, names: Sequence[str], key: Id, builder: UrdfBuilder) -> list[float]:
+    """The number of each of these attributes, its default value where it is missing or bad."""
+    values = []
+    for name, found in zip(names, take_each_number(node, names, builder, instead=f"{default:g} is used"), strict=True):
+        value = default if found is None else found
+        if value == default:
+            builder.follow(key, notations.without(name), follows=found is None and name not in node.attributes)
+        values.append(value)
+    return values
 
 
 # ---- limits ------------------------------------------------------------------------------------------------------------------
@@ -197,7 +202,12 @@ def _read_limits(joint: Node, key: Id, builder: UrdfBuilder) -> Limits:
         builder.warn(codes.MISSING_LIMIT, joint, message)
         return UNLIMITED
     missing = [name for name in ("effort", "velocity") if name not in node.attributes]
-    limits = _rates(node, _bound(node, "lower", key, builder), _bound(node, "upper", key, builder), builder)
+    without = [name for name in _BOUNDS if name not in node.attributes]
+    bounds = dict(zip(_BOUNDS, _take_limits(node, _BOUNDS, builder), strict=True)) | dict.fromkeys(without, 0.0)
+    for name, bound in bounds.items():
+        if bound == 0.0:
+            builder.follow(key, notations.without(name), follows=name in without)
+    limits = Limits(*bounds.values(), *_take_limits(node, _RATES, builder))
     _check_limits(joint, node, limits, missing, builder)
     return limits
 
@@ -207,29 +217,16 @@ def _read_open_limits(joint: Node, builder: UrdfBuilder) -> Limits:
     node = joint.take_child("limit")
     if node is None:
         return UNLIMITED
-    limits = _rates(node, None, None, builder)
+    limits = Limits(None, None, *_take_limits(node, _RATES, builder))
     if limits == UNLIMITED:
         joint.leave(node)
     return limits
 
 
-def _bound(node: Node, name: str, key: Id, builder: UrdfBuilder) -> float | None:
-    is_missing = name not in node.attributes
-    value = 0.0 if is_missing else _rate(node, name, builder)
-    if value == 0.0:
-        builder.follow(key, notations.without(name), follows=is_missing)
-    return value
-
-
-def _rates(node: Node, lower: float | None, upper: float | None, builder: UrdfBuilder) -> Limits:
-    return Limits(lower, upper, *[_rate(node, name, builder) for name in ("velocity", "effort", "acceleration", "jerk")])
-
-
-def _rate(node: Node, name: str, builder: UrdfBuilder) -> float | None:
-    if name not in node.attributes:
-        return None
-    value = take_number(node, name, builder, instead="unlimited is used")
-    return None if value is None or words.is_no_limit(value) else value
+def _take_limits(node: Node, names: Sequence[str], builder: UrdfBuilder) -> list[float | None]:
+    """The limits of these names; None for unlimited."""
+    numbers = take_each_number(node, names, builder, instead="unlimited is used")
+    return [None if number is None or words.is_no_limit(number) else number for number in numbers]
 
 
 def _check_limits(joint: Node, node: Node, limits: Limits, missing: list[str], builder: UrdfBuilder) -> None:
@@ -255,7 +252,7 @@ def _read_safety(joint: Node, key: Id, builder: UrdfBuilder) -> Safety | None:
     if "k_velocity" not in node.attributes:
         message = f"{joint.subject}: <safety_controller> has no k_velocity; 0 is used"
         builder.warn(codes.MISSING_ATTRIBUTE, node, message)
-    return Safety(*[_usually(0.0, node, name, key, builder) for name in names])
+    return Safety(*_usually(0.0, node, names, key, builder))
 
 
 def _read_calibration(joint: Node, builder: UrdfBuilder) -> Calibration | None:
@@ -263,7 +260,7 @@ def _read_calibration(joint: Node, builder: UrdfBuilder) -> Calibration | None:
     if node is None:
         return None
     names = ("rising", "falling", "reference_position")
-    found = Calibration(*(take_number(node, name, builder, instead="nothing is used") for name in names))
+    found = Calibration(*take_each_number(node, names, builder, instead="nothing is used"))
     if found == Calibration():
         joint.leave(node)
         return None
@@ -286,9 +283,10 @@ def _read_mimic(joint: Node, builder: UrdfBuilder) -> None:
         joint.leave(node)
         return
     node.take("joint")
-    coefficients = (_usually(0.0, node, "offset", joint.owner, builder), _usually(1.0, node, "multiplier", joint.owner, builder))
+    (offset,) = _usually(0.0, node, ("offset",), joint.owner, builder)
+    (multiplier,) = _usually(1.0, node, ("multiplier",), joint.owner, builder)
     key = builder.names.take("coupling", joint.owner.name)
-    builder.edges[key] = coupling_edge(joint.owner, ((leader, coefficients),))
+    builder.edges[key] = coupling_edge(joint.owner, ((leader, (offset, multiplier)),))
     builder.origins[key] = node.origin
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
-from hymeko_x.frontends.urdf.builder import read_origin, take_name, take_number, take_numbers
+from hymeko_x.frontends.urdf.builder import read_origin, take_each_number, take_name, take_number, take_numbers
 from hymeko_x.frontends.urdf.materials import read_shape_material
 from hymeko_x.ir.mechanism import ROOT, shape_edge
 from hymeko_x.ir.notations import WITHOUT_TENSOR
@@ -85,13 +85,12 @@ def _read_tensor(inertial: Node, builder: UrdfBuilder) -> Tensor | None:
     if node is None:
         _warn_missing(inertial, "inertia", "its tensor is unspecified (urdfdom then drops the mass as well)", builder)
         return None
-    values = []
-    for name in _TENSOR:
-        value = take_number(node, name, builder, instead="0 is used")
-        if value is None and name not in node.attributes:
-            _warn_missing(node, name, "0 is used", builder)
-        values.append(0.0 if value is None else value)
-    xx, yy, zz, xy, xz, yz = values
+    numbers = take_each_number(node, _TENSOR, builder, instead="0 is used")
+    if None in numbers:
+        for name, number in zip(_TENSOR, numbers, strict=True):
+            if number is None and name not in node.attributes:
+                _warn_missing(node, name, "0 is used", builder)
+    xx, yy, zz, xy, xz, yz = [0.0 if number is None else number for number in numbers]
     return (xx, yy, zz, xy, xz, yz)
 
 
