@@ -230,11 +230,11 @@ def take_number(node: Node, attribute: str, builder: UrdfBuilder, *, instead: st
     return take_each_number(node, (attribute,), builder, instead=instead)[0]
 
 
-def _report_bad_number(node: Node, attribute: str, text: str, builder: UrdfBuilder, words: str) -> None:
+def _report_bad_number(node: Node, attribute: str, text: str, builder: UrdfBuilder, problem: str) -> None:
     is_template = "${" in text or "$(" in text
     builder.report.error(
         codes.LEFTOVER_TEMPLATE if is_template else codes.BAD_NUMBER,
-        f"{node.subject}: <{node.tag} {attribute}> is '{shortened(text)}', {words}, and the text is kept as written",
+        f"{node.subject}: <{node.tag} {attribute}> is '{shortened(text)}', {problem}, and the text is kept as written",
         node.origin,
         element=node.element,
         hint="expand the file with xacro first" if is_template else "",
