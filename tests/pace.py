@@ -26,7 +26,7 @@ def seconds(work: Callable[[], object]) -> float:
         gc.enable()
 
 
-def _skip_if_recorded(work: Callable[[], object]) -> None:
+def skip_if_recorded(work: Callable[[], object] = lambda: None) -> None:
     """Skip the test, after one run of the work, where the lines that run are recorded, which takes more time than any bound allows."""
     coverage = sys.modules.get("coverage")
     if coverage is not None and coverage.Coverage.current() is not None:
@@ -36,7 +36,7 @@ def _skip_if_recorded(work: Callable[[], object]) -> None:
 
 def assert_within(bound: float, work: Callable[[], object]) -> None:
     """The work takes at most so many seconds of processor time, in one round of several."""
-    _skip_if_recorded(work)
+    skip_if_recorded(work)
     taken: list[float] = []
     while not taken or taken[-1] > bound:
         assert len(taken) < ROUNDS, f"{', '.join(f'{time:.3f}' for time in taken)} s, not {bound:g} s at most"
@@ -49,7 +49,7 @@ def assert_at_most(bound: float, work: Callable[[], object], yardstick: Callable
     The two take turns, and with ``count`` runs about equally long, so that both meet the machine at the same pace. A machine that
     slows down within a round spoils that round; work of a higher order than the yardstick is over the bound in all of them.
     """
-    _skip_if_recorded(work)
+    skip_if_recorded(work)
     ratios: list[float] = []
     while not ratios or ratios[-1] > bound:
         assert len(ratios) < ROUNDS, f"{', '.join(f'{ratio:.2f}' for ratio in ratios)} times as long, not {bound:g} at most"

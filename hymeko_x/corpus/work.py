@@ -130,10 +130,10 @@ def _as_found(robot: Robot, source: Source) -> Robot:
 
 def counted(robot: Robot, mechanism: Mechanism, report: Report) -> Robot:
     """The row of a file with the numbers of its bodies, joints, dofs and shapes."""
-    joints = [part for part in mechanism.graph.edges.values() if isinstance(part.data, Joint)]
-    bodies = sum(isinstance(part, Body) for part in mechanism.graph.vertices.values())
-    shapes = sum(isinstance(edge.data, Shape) for edge in mechanism.graph.edges.values())
-    dofs = sum(len(joint.data.dofs) for joint in joints if isinstance(joint.data, Joint))
+    joints = [joint for _, joint, _ in mechanism.edges(Joint)]
+    bodies = len([*mechanism.vertices(Body)])
+    shapes = len([*mechanism.edges(Shape)])
+    dofs = sum(len(joint.dofs) for joint in joints)
     return replace(robot, bodies=bodies, joints=len(joints), dofs=dofs, shapes=shapes, diagnostics=_by_code(report))
 
 

@@ -172,15 +172,12 @@ def with_new_names(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
     mechanism = replace(mechanism, notations=notations)
     back = {old: new for new, old in names.items()}
     dofs = {old.name: new.name for old, new in back.items() if old.kind == "joint"}
-    edges = {key: _with_dof_names(edge, dofs) for key, edge in mechanism.graph.edges.items() if isinstance(edge.data, Joint)}
+    edges: dict[Id, RobotEdge] = {
+        key: Edge(with_dof_names(joint, lambda name: dofs.get(name, name)), arcs) for key, joint, arcs in mechanism.edges(Joint)
+    }
     return _renamed(mechanism.replace(edges=edges), back)
 
 
 def _renamed(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
     """The mechanism with new ids by the old ones, in references of its notations and fragments as well."""
     return with_references(rename(mechanism, names), names)
-
-
-def _with_dof_names(edge: RobotEdge, names: Mapping[str, str]) -> RobotEdge:
-    assert isinstance(edge.data, Joint)
-    return Edge(with_dof_names(edge.data, lambda name: names.get(name, name)), edge.arcs)

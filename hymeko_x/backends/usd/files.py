@@ -171,7 +171,7 @@ def _warn(run: _Packing, key: Id, code: Code, words: str) -> None:
 
 def _with_textures(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     """Textures beside the stage, by relative paths; meshes keep theirs, which are only remembered."""
-    textures = {key: part for key, part in mechanism.graph.vertices.items() if isinstance(part, Texture)}
+    textures = [key for key, _ in mechanism.vertices(Texture)]
     if not textures:
         return mechanism
     meshes = [key for key, _ in mechanism.vertices(Mesh)]
