@@ -66,24 +66,22 @@ def leaves_again(other: Mechanism, a: Mechanism, b: Mechanism, between: Mapping[
 def leaves_of(a: object, b: object) -> Leaves:
     """The leaves in which two values differ, in the order of their fields. Depth is that of the parts, which is small."""
     found: Leaves = []
-    _collect(a, b, (), NODEFAULT, True, found)
+    if not have_same_bytes(a, b):
+        _collect(a, b, (), NODEFAULT, True, found)
     return found
 
 
 def _collect(a: object, b: object, path: Path, default: object, counts: bool, found: Leaves) -> None:
-    """What differs between two values. Nearly all are the same, which is seen at once."""
-    if a is b:
-        return
+    """What differs between two values that do not have the same bytes, as nearly all have."""
     kind = type(a)
     layout = layout_of(kind) if kind is type(b) else None
     if layout is None:
         if kind is tuple and _are_alike(a, b):
             for place, (before, after) in enumerate(zip(a, b, strict=True)):  # type: ignore[call-overload]
-                _collect(before, after, (*path, place), NODEFAULT, counts, found)
+                if not have_same_bytes(before, after):
+                    _collect(before, after, (*path, place), NODEFAULT, counts, found)
         elif not identical(a, b):
             found.append(Leaf(path, a, b, default, counts))
-    elif have_same_bytes(a, b):
-        return
     elif kind is Pose:
         _collect_pose(a, b, path, counts, found)  # type: ignore[arg-type]
     elif kind is Edge and len(a.arcs) == len(b.arcs):  # type: ignore[attr-defined]
@@ -96,10 +94,11 @@ def _collect(a: object, b: object, path: Path, default: object, counts: bool, fo
 
 def _collect_edge(a: RobotEdge, b: RobotEdge, path: Path, counts: bool, found: Leaves) -> None:
     """The same for two edges with as many arcs: nearly all lead to the same elements."""
-    _collect(a.data, b.data, (*path, "data"), NODEFAULT, counts, found)
-    if have_same_bytes(a.arcs, b.arcs):
-        return
+    if not have_same_bytes(a.data, b.data):
+        _collect(a.data, b.data, (*path, "data"), NODEFAULT, counts, found)
     for place, (x, y) in enumerate(zip(a.arcs, b.arcs, strict=True)):
+        if have_same_bytes(x, y):
+            continue
         if x.target != y.target or x.sign != y.sign or x.role != y.role:
             _collect(x, y, (*path, "arcs", place), NODEFAULT, counts, found)
         else:

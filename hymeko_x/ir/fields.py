@@ -101,7 +101,7 @@ def have_same_bytes(a: object, b: object) -> bool:
     Floats are written with all their bits, and the names of fields as well. What cannot be written is left to :func:`identical`.
     """
     try:
-        return _bytes_of(a) == _bytes_of(b)
+        return a is b or _bytes_of(a) == _bytes_of(b)
     except (TypeError, ValueError, OverflowError):
         return False
 

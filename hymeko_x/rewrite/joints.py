@@ -88,7 +88,7 @@ def name_dofs(mechanism: Mechanism, context: Context) -> Mechanism:
     """Every dof gets a name of its own: the joint's where it is the only one, else that with what moves (``_TX``, ``_RZ``)."""
     alone = {full_name(view, 0) for view in mechanism.joints.values() if len(view.joint.dofs) == 1}
     if len(alone) == sum([len(view.joint.dofs) for view in mechanism.joints.values()]):
-        return mechanism  # each is the only one of its joint
+        return mechanism  # each is the only one of its joint, and no two have one name
     edges: dict[Id, RobotEdge] = {}
     moved: dict[tuple[Id, int], tuple[Id, str]] = {}
     seen: set[str] = set()

@@ -203,8 +203,7 @@ def take_numbers(node: Node, attribute: str, count: int, builder: UrdfBuilder, *
     if numbers is not None and len(numbers) == count:
         del node.attributes[attribute]
         return numbers
-    expected = "one finite number" if count == 1 else f"{count} finite numbers separated by blanks"
-    _report_bad_number(node, attribute, text, builder, f"expected {expected}; {instead}")
+    _report_bad_numbers(node, attribute, text, count, builder, instead)
     return None
 
 
@@ -221,7 +220,7 @@ def take_each_number(node: Node, attributes: Iterable[str], builder: UrdfBuilder
             continue
         found.append(None)
         if text is not None:
-            _report_bad_number(node, attribute, text, builder, f"expected one finite number; {instead}")
+            _report_bad_numbers(node, attribute, text, 1, builder, instead)
     return found
 
 
@@ -230,11 +229,12 @@ def take_number(node: Node, attribute: str, builder: UrdfBuilder, *, instead: st
     return take_each_number(node, (attribute,), builder, instead=instead)[0]
 
 
-def _report_bad_number(node: Node, attribute: str, text: str, builder: UrdfBuilder, problem: str) -> None:
+def _report_bad_numbers(node: Node, attribute: str, text: str, count: int, builder: UrdfBuilder, instead: str) -> None:
+    expected = "one finite number" if count == 1 else f"{count} finite numbers separated by blanks"
     is_template = "${" in text or "$(" in text
     builder.report.error(
         codes.LEFTOVER_TEMPLATE if is_template else codes.BAD_NUMBER,
-        f"{node.subject}: <{node.tag} {attribute}> is '{shortened(text)}', {problem}, and the text is kept as written",
+        f"{node.subject}: <{node.tag} {attribute}> is '{shortened(text)}', expected {expected}; {instead}, and the text is kept as written",
         node.origin,
         element=node.element,
         hint="expand the file with xacro first" if is_template else "",
