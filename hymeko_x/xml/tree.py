@@ -240,15 +240,10 @@ class TreeBuilder:
         """The handlers of elements and text, which are called for every element: closures are quicker than methods."""
         parser, file, lines, stack, make = self._parser, self._file, self._lines, self._open, Node
         most = (self._deepest or sys.maxsize - 1) + 1
-        ends_in, end_of_line = self._data.count, b"\n" if b"\n" in self._data else b"\r"
-        line, counted = 1, 0
 
         def start(tag: str, attributes: dict[str, str]) -> None:
-            nonlocal line, counted
-            around, here = stack[-1], parser.CurrentByteIndex
-            line = line + ends_in(end_of_line, counted, here) if lines is None else next(lines)
-            counted = here
-            node = make(tag, attributes, around, file, line, here)
+            around, line = stack[-1], parser.CurrentLineNumber if lines is None else next(lines)
+            node = make(tag, attributes, around, file, line, parser.CurrentByteIndex)
             around.children.append(node)
             stack.append(node)
             if len(stack) > most:

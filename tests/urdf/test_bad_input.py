@@ -29,6 +29,13 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
             "2:1: warning[HX005]: the XML declaration does not stand at the start; read as if it did",
         ],
     ),
+    "line ends of three systems in one file": (
+        robot(f'{LINK}\r<drake:x y="1"/>\r\n<drake:z/>\n<visual:x/>'),
+        [
+            "3: warning[HX005]: undeclared prefix 'drake'; read as if the root declared it",
+            "5: warning[HX005]: undeclared prefix 'visual'; read as if the root declared it",
+        ],
+    ),
     "an undeclared prefix": (
         robot(LINK + '<drake:x y="1"/>'),
         [
