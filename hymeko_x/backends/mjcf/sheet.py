@@ -164,16 +164,14 @@ class MjcfSheet(Struct):
         written = {name.removeprefix(start): text for name, text in notations.items() if name.startswith(start)} if notations else {}
         for group, inherited in self.inherited.of(groups, base, self.settings):
             value = values[group.key]
-            context = _chosen({**kept, **found} if kept else found, group.needs) if group.needs and (kept or found) else None
-            below = {**base, **context} if context else base
-            noted = _chosen(written, group.names) if written else None
-            if noted and self._means(group, merge(below, noted), value):
+            context = _chosen({**kept, **found}, group.needs) if group.needs and (kept or found) else _EMPTY
+            if written and (noted := _chosen(written, group.names)) and self._means(group, merge({**base, **context}, noted), value):
                 found |= noted
-            elif not (self._means(group, below, value) if context else group.same(inherited, value)):
+            elif not (self._means(group, {**base, **context}, value) if context else group.same(inherited, value)):
                 texts = group.write(value, self.settings)
                 for name, text in ({**texts, **undone(group, base, texts)} if base else texts).items():
                     if base.get(name) != text:
-                        found[name] = self._unsigned(name, text)
+                        found[name] = self._unsigned(name, text) if "-0" in text else text
         return found
 
     def _means(self, group: Group, attributes: Mapping[str, str], value: Any) -> bool:

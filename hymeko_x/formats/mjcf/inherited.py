@@ -24,6 +24,7 @@ class InheritedValues:
 
     def __init__(self) -> None:
         self._known: dict[tuple[int, int], tuple[tuple[Group, Any], ...]] = {}
+        self._apart: dict[tuple[int, int, tuple[str, ...]], tuple[dict[str, Any], list[Group]]] = {}
         self._groups: list[tuple[Group, ...]] = []
 
     def of(self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
@@ -33,6 +34,22 @@ class InheritedValues:
         if found is None:
             found = self._known[place] = _values_of(groups, base, settings) if base else _own_defaults(groups, settings)
             self._groups.append(groups)
+        return found
+
+    def apart(
+        self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings, names: tuple[str, ...]
+    ) -> tuple[Mapping[str, Any], list[Group]]:
+        """The values that an element with attributes of these names inherits, by the keys of their groups; and the groups that it reads."""
+        form = id(groups), id(base) if base else 0, names
+        found = self._apart.get(form)
+        if found is None:
+            own = frozenset(names)
+            values, read = found = self._apart[form] = {}, []
+            for group, inherited in self.of(groups, base, settings):
+                if inherited is REFUSED or not own.isdisjoint(group.names) or not own.isdisjoint(group.needs):
+                    read.append(group)
+                else:
+                    values[group.key] = inherited
         return found
 
 

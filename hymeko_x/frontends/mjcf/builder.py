@@ -12,7 +12,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import merge
 from hymeko_x.formats.mjcf.codec import BadAttribute
-from hymeko_x.formats.mjcf.inherited import REFUSED, InheritedValues
+from hymeko_x.formats.mjcf.inherited import InheritedValues
 from hymeko_x.formats.mjcf.mesh_order import MESHES, noted_order
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.tree import verbatim
@@ -114,15 +114,13 @@ class MjcfBuilder(Builder):
 
         Where printing the values again would not mean the same, or ``always``, the attributes are noted as they are.
         """
-        own, names, settings = element.attributes, element.attributes.keys(), self.settings
+        own, settings = element.attributes, self.settings
         merged = merge(base, own)
-        found: Values = {}
+        inherited, read = self.inherited.apart(groups, base, settings, tuple(own))
+        found: Values = {**inherited}
         taken: list[str] = []
         try:
-            for group, inherited in self.inherited.of(groups, base, settings):
-                if inherited is not REFUSED and names.isdisjoint(group.names) and names.isdisjoint(group.needs):
-                    found[group.key] = inherited
-                    continue
+            for group in read:
                 value = found[group.key] = group.read(merged, settings)
                 touched = {name: own[name] for name in group.names if name in own}
                 taken += touched
