@@ -203,7 +203,7 @@ def take_numbers(node: Node, attribute: str, count: int, builder: UrdfBuilder, *
     if numbers is not None and len(numbers) == count:
         del node.attributes[attribute]
         return numbers
-    _report_bad_numbers(node, attribute, text, count, builder, instead)
+    _report_bad_numbers(node, attribute, count, builder, instead)
     return None
 
 
@@ -212,15 +212,14 @@ def take_each_number(node: Node, attributes: Iterable[str], builder: UrdfBuilder
     found: list[float | None] = []
     there = node.attributes
     for attribute in attributes:
-        text = there.get(attribute)
-        numbers = read_numbers(text) if text is not None else None
-        if numbers is not None and len(numbers) == 1:
+        numbers = read_numbers(there.get(attribute, ""))
+        if numbers and len(numbers) == 1:
             del there[attribute]
             found.append(numbers[0])
             continue
         found.append(None)
-        if text is not None:
-            _report_bad_numbers(node, attribute, text, 1, builder, instead)
+        if attribute in there:
+            _report_bad_numbers(node, attribute, 1, builder, instead)
     return found
 
 
@@ -229,7 +228,8 @@ def take_number(node: Node, attribute: str, builder: UrdfBuilder, *, instead: st
     return take_each_number(node, (attribute,), builder, instead=instead)[0]
 
 
-def _report_bad_numbers(node: Node, attribute: str, text: str, count: int, builder: UrdfBuilder, instead: str) -> None:
+def _report_bad_numbers(node: Node, attribute: str, count: int, builder: UrdfBuilder, instead: str) -> None:
+    text = node.attributes[attribute]
     expected = "one finite number" if count == 1 else f"{count} finite numbers separated by blanks"
     is_template = "${" in text or "$(" in text
     builder.report.error(

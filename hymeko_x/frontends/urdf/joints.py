@@ -34,10 +34,11 @@ def read_joints(root: Node, builder: UrdfBuilder) -> None:
     """Add all joints; a joint without two ends stays outside of the tree, as it was written."""
     waiting = []
     for node in root.take_children("joint"):
-        if not _has_ends(node, builder):
+        ends = _ends_of(node, builder)
+        if ends is None:
             root.leave(node)
             continue
-        joint = _read_joint(node, builder)
+        joint = _read_joint(node, ends, builder)
         if node.has("mimic") or not joint.dofs:
             waiting.append(node)
         else:
@@ -49,9 +50,9 @@ def read_joints(root: Node, builder: UrdfBuilder) -> None:
         builder.close(node)
 
 
-def _read_joint(node: Node, builder: UrdfBuilder) -> Joint:
+def _read_joint(node: Node, ends: tuple[Node, Node], builder: UrdfBuilder) -> Joint:
     key = take_name(node, "joint", builder.joints, builder)
-    parent, child = _read_end(node, "parent", builder), _read_end(node, "child", builder)
+    parent, child = [_take_link(node, end, builder) for end in ends]
     word = _read_type(node, builder)
     pose = read_origin(node, key, builder)
     joint = Joint(_read_dofs(node, key, word, builder))
@@ -64,29 +65,28 @@ def _read_joint(node: Node, builder: UrdfBuilder) -> Joint:
 # ---- ends and type -----------------------------------------------------------------------------------------------------------
 
 
-def _has_ends(node: Node, builder: UrdfBuilder) -> bool:
-    missing = [f"<{tag} link>" for tag in ("parent", "child") if not _names_link(node, tag)]
-    if missing:
-        name = node.attributes.get("name", "")
-        message = f"joint '{name}' has no {' and no '.join(missing)}; it is kept as written and is not part of the tree"
-        builder.report.error(codes.MISSING_PART, message, node.origin, element=f"joint '{name}'")
-    return not missing
+def _ends_of(joint: Node, builder: UrdfBuilder) -> tuple[Node, Node] | None:
+    """The elements that name the parent and the child of a joint; None, which is reported, where one is missing."""
+    parent, child = joint.child("parent"), joint.child("child")
+    if parent is not None and child is not None and "link" in parent.attributes and "link" in child.attributes:
+        return parent, child
+    ends = (("parent", parent), ("child", child))
+    missing = " and no ".join([f"<{tag} link>" for tag, end in ends if end is None or "link" not in end.attributes])
+    name = joint.attributes.get("name", "")
+    message = f"joint '{name}' has no {missing}; it is kept as written and is not part of the tree"
+    builder.report.error(codes.MISSING_PART, message, joint.origin, element=f"joint '{name}'")
+    return None
 
 
-def _names_link(joint: Node, tag: str) -> bool:
-    end = joint.child(tag)
-    return end is not None and "link" in end.attributes
-
-
-def _read_end(joint: Node, tag: str, builder: UrdfBuilder) -> Id:
-    """The link that a joint names; one that is not defined is added, empty, so that the joint keeps its place."""
-    node = joint.take_child(tag)
-    name = (node.take("link") if node is not None else None) or ""
+def _take_link(joint: Node, end: Node, builder: UrdfBuilder) -> Id:
+    """The link that an end of a joint names; one that is not defined is added, empty, so that the joint keeps its place."""
+    end.taken = True
+    name = end.take("link") or ""
     known = builder.links.get(name)
     if known is not None:
         return known
-    message = f"{joint.subject}: <{tag} link> is '{name}', which is not defined; an empty link of this name was added"
-    is_world = tag == "parent" and name == WORLD.name  # the usual way to fix a base, and what some readers define by themselves
+    message = f"{joint.subject}: <{end.tag} link> is '{name}', which is not defined; an empty link of this name was added"
+    is_world = end.tag == "parent" and name == WORLD.name  # the usual way to fix a base, and what some readers define by themselves
     (builder.warn if is_world else builder.error)(codes.UNDEFINED_REFERENCE, joint, message)
     key = builder.links[name] = builder.names.take("body", name)
     builder.vertices[key] = Body()
