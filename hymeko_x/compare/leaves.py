@@ -5,6 +5,8 @@ The ledger and the residue are made from the same leaves, which are computed onc
 
 from __future__ import annotations
 
+from itertools import compress
+from operator import is_not
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from msgspec import NODEFAULT, Struct
@@ -87,8 +89,10 @@ def _collect(a: object, b: object, path: Path, default: object, counts: bool, fo
     elif kind is Edge and len(a.arcs) == len(b.arcs):  # type: ignore[attr-defined]
         _collect_edge(a, b, path, counts, found)  # type: ignore[arg-type]
     else:
-        for (name, own, compare), before, after in zip(layout.attributes, layout.values(a), layout.values(b), strict=True):
-            if before is not after and not have_same_bytes(before, after):
+        befores, afters = layout.values(a), layout.values(b)
+        fields = zip(layout.attributes, befores, afters, strict=True)
+        for (name, own, compare), before, after in compress(fields, map(is_not, befores, afters)):
+            if not have_same_bytes(before, after):
                 _collect(before, after, (*path, name), own, counts and compare, found)
 
 

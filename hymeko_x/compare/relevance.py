@@ -121,8 +121,10 @@ class _Relevance:
 def is_idle(difference: Difference) -> bool:
     """Whether it is an extra that holds nothing of a robot: a group, the root of an articulation, the extent of a geometry."""
     row = format_of(difference.field)
+    if row is None or not row.idle_extras:
+        return False
     texts = [text for text in (difference.before, difference.after) if text is not None]
-    return row is not None and bool(row.idle_extras and texts) and all(re.fullmatch(row.idle_extras, text) for text in texts)
+    return bool(texts) and all(re.fullmatch(row.idle_extras, text) for text in texts)
 
 
 def _is_of_robot(difference: Difference) -> bool:

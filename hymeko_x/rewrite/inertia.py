@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -82,9 +83,9 @@ def give_moving_bodies_mass(mechanism: Mechanism, context: Context, is_meant: Ca
     """
     changed: dict[Id, Body] = {}
     for key in moving_bodies(mechanism):
-        if not is_meant(key) or any(_is_sound(mechanism.vertex(body, Body)) for body in welded_to(mechanism, key)):
-            continue
         body = mechanism.vertex(key, Body)
+        if not is_meant(key) or _is_sound(body) or any(_is_sound(mechanism.vertex(other, Body)) for other in welded_to(mechanism, key)):
+            continue
         new = _least_inertial(body.inertial)
         changed[key] = replace(body, inertial=new)
         old = "no mass" if body.inertial is None else f"mass {body.inertial.mass!r} and inertia {_words(body.inertial.tensor)}"
@@ -174,6 +175,7 @@ def physical(tensor: Tensor) -> Tensor:
     return tuple(float(fixed[i, k]) for i, k in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))  # type: ignore[return-value]
 
 
+@lru_cache(4096)  # each of two rules asks for every body
 def _is_well_inside(tensor: Tensor) -> bool:
     """Whether a tensor is so far from every bound that this shows without its principal moments, as those of most bodies are.
 
