@@ -362,8 +362,8 @@ def number_text(value: float) -> str:
     return text.replace("e-0", "e-").replace("e+", "e") if "e" in text else text.removesuffix(".0")
 
 
-_WITH_EXPONENT = re.compile(r"(?<!\d)0\.0000([1-9])(\d*)")
-"""A number from 1e-5 to 1e-4 as a writer of JSON has it; Python writes it with an exponent."""
+_WITH_EXPONENT = re.compile(r"([\[,-])0\.0000([1-9])(\d*)")
+"""A number from 1e-5 to 1e-4 in a list as a writer of JSON has it, with the sign before it; Python writes it with an exponent."""
 
 
 def numbers_text(values: tuple[float, ...]) -> str:
@@ -378,7 +378,7 @@ def numbers_text(values: tuple[float, ...]) -> str:
     if text.count(".") != len(values) and ("null" in text or not are_numbers(values)):
         return " ".join(map(number_text, values))
     if "0.0000" in text:
-        text = _WITH_EXPONENT.sub(lambda found: f"{found[1]}.{found[2]}e-5" if found[2] else f"{found[1]}e-5", text)
+        text = _WITH_EXPONENT.sub(lambda found: f"{found[1]}{found[2]}.{found[3]}e-5" if found[3] else f"{found[1]}{found[2]}e-5", text)
     return text[1:-1].replace(".0,", " ").replace(",", " ").removesuffix(".0")
 
 

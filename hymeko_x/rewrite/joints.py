@@ -37,7 +37,7 @@ _LETTERS: Mapping[Vec3, str] = {X: "X", Y: "Y", Z: "Z"}
 
 def expand_screws(mechanism: Mechanism, context: Context) -> Mechanism:
     """A screw becomes a hinge and a slide along the same axis that is coupled to it by the pitch."""
-    screws = [view for view in mechanism.joints.values() if any(dof.kind is DofKind.SCREW for dof in view.joint.dofs)]
+    screws = [view for view in mechanism.joints.values() if DofKind.SCREW in [dof.kind for dof in view.joint.dofs]]
     if not screws:
         return mechanism
     edges: dict[Id, RobotEdge] = {}
@@ -69,7 +69,7 @@ def lower_inner_free_joints(mechanism: Mechanism, context: Context) -> Mechanism
     edges: dict[Id, RobotEdge] = {}
     for view in mechanism.joints.values():
         dofs = view.joint.dofs
-        if not any(dof.kind is DofKind.FREE for dof in dofs) or (len(dofs) == 1 and view.parent == WORLD):
+        if DofKind.FREE not in [dof.kind for dof in dofs] or (len(dofs) == 1 and view.parent == WORLD):
             continue
         new: list[Dof] = []
         for dof in dofs:

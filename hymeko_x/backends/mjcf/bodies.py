@@ -51,7 +51,7 @@ def _filled(sheet: MjcfSheet, body: BodyTag) -> list[BodyTag]:
     for number in range(len(view.joint.dofs) if view is not None else 0):
         write_dof(sheet, body, view, number)  # type: ignore[arg-type]
     shapes = mechanism.shapes.get(key, ())
-    for shape in shapes if sheet.from_mjcf else sorted(shapes, key=_is_collision):
+    for shape in shapes if sheet.from_mjcf or len(shapes) < 2 else sorted(shapes, key=_is_collision):
         write_geom(sheet, body, shape)
     for mount in mechanism.mounts.get(key, ()):
         write_mount(sheet, body, mount)
