@@ -6,9 +6,9 @@ import posixpath
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
+from hymeko_x.ir.digits import number_text, numbers_text
 from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import MESH_POINTS, Material, Mesh, Role
-from hymeko_x.ir.values import number_text, numbers_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -9,8 +9,8 @@ from msgspec.structs import replace
 
 from hymeko_x import formats
 from hymeko_x.compare.diff import Difference
+from hymeko_x.ir.digits import number_text
 from hymeko_x.ir.parts import MESH_POINTS, Mesh, Role, Texture
-from hymeko_x.ir.values import number_text
 from hymeko_x.source import suffix_of
 
 if TYPE_CHECKING:

@@ -13,11 +13,12 @@ from msgspec import Struct
 from hymeko_x import formats
 from hymeko_x.compare.extras import as_meant, as_written, unshared
 from hymeko_x.compare.leaves import TURN, leaves_between, leaves_of
+from hymeko_x.ir.digits import are_numbers, number_text, numbers_text
 from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.holder import mechanism_of
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
-from hymeko_x.ir.values import IDENTITY, Pose, are_numbers, number_text, numbers_text, rotation_angle
+from hymeko_x.ir.values import IDENTITY, Pose, rotation_angle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

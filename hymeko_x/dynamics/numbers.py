@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct
 
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.digits import number_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

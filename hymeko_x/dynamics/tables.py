@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.signals import table
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.digits import number_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

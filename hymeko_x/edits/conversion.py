@@ -44,11 +44,11 @@ from hymeko_x.edits.weights import (
     with_least_masses,
     without_followed,
 )
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Body, Shape
-from hymeko_x.ir.values import numbers_text
 from hymeko_x.residue.align import align
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.landmarks import NAMED

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from hymeko_x import formats
 from hymeko_x.compare.diff import Tolerance
 from hymeko_x.compare.relevance import same_pose
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.kinematics import reference_poses
 from hymeko_x.ir.parts import Stance
-from hymeko_x.ir.values import numbers_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

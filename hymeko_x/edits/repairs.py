@@ -12,11 +12,11 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Report, refuse
 from hymeko_x.edits.text import EditedFiles, Texts, text_with_edits
 from hymeko_x.edits.updating import Updated
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.names import free_name, rename
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Inertial, Joint, Shape, Sphere
-from hymeko_x.ir.values import numbers_text
 from hymeko_x.residue.originals import files_of
 from hymeko_x.rewrite.apart import names_apart
 from hymeko_x.rewrite.context import Context

@@ -8,17 +8,14 @@ format writes it back digit by digit; comparisons ignore it.
 from __future__ import annotations
 
 import math
-import re
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
-
-from msgspec.json import encode
 
 from hymeko_x.ir.decimals import clean_angles, clean_quat, shortest_of
 from hymeko_x.ir.fields import Noted
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
 Vec3 = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
@@ -351,45 +348,3 @@ def rotation_angle(a: Quat, b: Quat) -> float:
     """The angle in rad, 0..pi, of the rotation between two unit quaternions."""
     w, x, y, z = quat_product(quat_inverse(a), b)
     return 2.0 * math.atan2(math.hypot(x, y, z), abs(w))
-
-
-# ---- writing numbers ---------------------------------------------------------------------------------------------------
-
-
-def number_text(value: float) -> str:
-    """The shortest decimal text that reads back to the same double: ``0.1``, ``2``, ``-1e-7``."""
-    text = repr(value) if type(value) is float else repr(float(value))
-    return text.replace("e-0", "e-").replace("e+", "e") if "e" in text else text.removesuffix(".0")
-
-
-_WITH_EXPONENT = re.compile(r"([\[,-])0\.0000([1-9])(\d*)")
-"""A number from 1e-5 to 1e-4 in a list as a writer of JSON has it, with the sign before it; Python writes it with an exponent."""
-
-
-def numbers_text(values: tuple[float, ...]) -> str:
-    """Numbers separated by blanks, each as :func:`number_text` writes it.
-
-    A writer of JSON finds the digits in a tenth of the time; where it cannot represent a value, Python is asked.
-    """
-    try:
-        text = encode(values).decode()
-    except TypeError:  # a number that is no plain one of Python
-        return " ".join(map(number_text, values))
-    if text.count(".") != len(values) and ("null" in text or not are_numbers(values)):
-        return " ".join(map(number_text, values))
-    if "0.0000" in text:
-        text = _WITH_EXPONENT.sub(lambda found: f"{found[1]}{found[2]}.{found[3]}e-5" if found[3] else f"{found[1]}{found[2]}e-5", text)
-    return text[1:-1].replace(".0,", " ").replace(",", " ").removesuffix(".0")
-
-
-def number_texts(values: Mapping[str, float]) -> dict[str, str]:
-    """What :func:`number_text` writes of each, sooner than one by one."""
-    return dict(zip(values, numbers_text(tuple(values.values())).split(" "), strict=True)) if values else {}
-
-
-def are_numbers(values: tuple[object, ...]) -> bool:
-    """Whether these are floating-point numbers and nothing else, as :func:`numbers_text` writes them fastest."""
-    return {*map(type, values)} == _FLOATS
-
-
-_FLOATS = {float}

@@ -13,7 +13,7 @@ import re
 from typing import NamedTuple, TypeGuard
 
 from hymeko_x import formats
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.digits import number_text
 from hymeko_x.language.syntax import Comment, Field, Item, Node, Parameter, QuotedName, Ref, Value, is_list
 from hymeko_x.xml.text import comment_markup
 

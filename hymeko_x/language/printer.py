@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, TypeGuard, TypeVar
 
-from hymeko_x.ir.values import are_numbers, number_text, numbers_text
+from hymeko_x.ir.digits import are_numbers, number_text, numbers_text
 from hymeko_x.language.syntax import (
     ArcItem,
     Comment,

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any
 from msgspec import NODEFAULT, Struct
 
 from hymeko_x.ir import geometry, lumped, parts, values
+from hymeko_x.ir.digits import are_numbers
 from hymeko_x.ir.fields import NUMBERS, attributes_of, identical
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.types import is_sound, settled
-from hymeko_x.ir.values import ZERO, Written, are_numbers
+from hymeko_x.ir.values import ZERO, Written
 from hymeko_x.ir.written import pose_as_written
 from hymeko_x.language.syntax import Ref, is_list
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import diagnostics, formats
 from hymeko_x.compare.extras import format_of
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.digits import number_text
 from hymeko_x.reporting.aspects import Aspect, aspect_of, kind_of
 from hymeko_x.reporting.values import error_of, size_of
 

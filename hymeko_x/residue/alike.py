@@ -10,11 +10,12 @@ from msgspec import NODEFAULT
 from msgspec.structs import replace
 
 from hymeko_x import formats
+from hymeko_x.ir.digits import are_numbers
 from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import pose_weight
 from hymeko_x.ir.parts import Role, Shape
-from hymeko_x.ir.values import IDENTITY, Pose, are_numbers
+from hymeko_x.ir.values import IDENTITY, Pose
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable

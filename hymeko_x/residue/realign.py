@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x.compare.diff import Difference
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import WORLD, WORLD_LINK, Id, pose_weight
 from hymeko_x.ir.names import rename, with_dof_names
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Joint, Role, Shape, World
-from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate_tensor
+from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, rotate_tensor
 from hymeko_x.residue.chains import fold_chains
 from hymeko_x.rewrite.references import with_references
 

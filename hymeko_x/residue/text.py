@@ -13,8 +13,9 @@ from msgspec import NODEFAULT
 from msgspec.structs import replace
 
 from hymeko_x.compare.leaves import TURN
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.graph import Edge
-from hymeko_x.ir.values import Pose, numbers_text
+from hymeko_x.ir.values import Pose
 from hymeko_x.language.printer import TextBlock, print_block, print_field, print_item, print_name
 from hymeko_x.language.syntax import ArcItem, Comment, Ref
 from hymeko_x.language.values import encoded, encoded_turn, given_fields, name_ref

@@ -12,10 +12,10 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import native_format
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.notations import WITHOUT_TENSOR
 from hymeko_x.ir.parts import Body, Inertial
 from hymeko_x.ir.solids import with_tensor_of
-from hymeko_x.ir.values import numbers_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterator

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 from lsprotocol import types
 
 from hymeko_x.diagnostics import Refusal
+from hymeko_x.ir.digits import number_text, numbers_text
 from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Body, Joint
-from hymeko_x.ir.values import number_text, numbers_text, rpy_from_quat
+from hymeko_x.ir.values import rpy_from_quat
 from hymeko_x.language.formatting import format_text
 from hymeko_x.language.templates import standard_templates
 from hymeko_x.robot.kinematics import all_poses

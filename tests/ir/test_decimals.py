@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hymeko_x.ir.decimals import PRECISION, clean_quat, shortest, shortest_of
-from hymeko_x.ir.values import Pose, compose, number_text, quat_from_rpy, rotate_tensor, rpy_from_quat, unit_quat
+from hymeko_x.ir.digits import number_text
+from hymeko_x.ir.values import Pose, compose, quat_from_rpy, rotate_tensor, rpy_from_quat, unit_quat
 from hymeko_x.ir.written import Written, clean_pose, length_of, pose_as_written
 
 FLOATS = st.floats(allow_nan=False, allow_infinity=False)

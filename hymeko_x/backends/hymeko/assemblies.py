@@ -20,10 +20,10 @@ from hymeko_x.factor.forms import Hole, Signed, words
 from hymeko_x.factor.unify import unify
 from hymeko_x.factor.words import limb_of_most, meaning
 from hymeko_x.formats.hymeko import AXES, RESERVED, ROLE_MOVES
+from hymeko_x.ir.digits import number_text
 from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.names import free_name
-from hymeko_x.ir.values import number_text
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import ArcItem, Comment, Expression, Field, Node, Parameter, Ref, Stereotype
 

@@ -7,7 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from hymeko_x.factor.words import common_words, limb, meaning, side, telling_words
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.digits import number_text
 from hymeko_x.language.syntax import ArcItem, Field, Ref, is_list
 
 if TYPE_CHECKING:

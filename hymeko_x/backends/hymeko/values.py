@@ -11,7 +11,8 @@ from msgspec import Struct
 from hymeko_x.formats.hymeko import TURNING
 from hymeko_x.formats.hymeko.units import MOST_DIGITS, rounded, unit_factor
 from hymeko_x.ir import parts
-from hymeko_x.ir.values import NO_ROTATION, Pose, number_text
+from hymeko_x.ir.digits import number_text
+from hymeko_x.ir.values import NO_ROTATION, Pose
 from hymeko_x.language.syntax import Quantity, Query, Ref
 from hymeko_x.language.terminals import KEYWORDS
 

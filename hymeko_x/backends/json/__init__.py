@@ -10,10 +10,10 @@ from msgspec import Struct
 from msgspec.json import Encoder
 
 from hymeko_x.formats.json import ENDLESS, MARK, VERSION
+from hymeko_x.ir.digits import are_numbers
 from hymeko_x.ir.fields import attributes_of, identical
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.provenance import kept_notations
-from hymeko_x.ir.values import are_numbers
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:

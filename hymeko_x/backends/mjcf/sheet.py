@@ -18,11 +18,11 @@ from hymeko_x.formats.mjcf.codec import BadAttribute, Settings, parameter_text, 
 from hymeko_x.formats.mjcf.inherited import InheritedValues
 from hymeko_x.formats.mjcf.schema import attributes_of, kinds_of
 from hymeko_x.formats.mjcf.tree import COMMENT, parse_text
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Joint, Mesh, Shape, Texture
-from hymeko_x.ir.values import numbers_text
 from hymeko_x.source import file_stem
 from hymeko_x.xml.printing import Tag
 

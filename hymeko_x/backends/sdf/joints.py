@@ -21,9 +21,10 @@ from hymeko_x.formats.sdf.values import (
     BadText,
     Field,
 )
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import WORLD, numbers_weight
 from hymeko_x.ir.parts import Dof, DofKind, Joint, Loop
-from hymeko_x.ir.values import numbers_text, rotate, unit
+from hymeko_x.ir.values import rotate, unit
 from hymeko_x.xml.printing import Tag
 from hymeko_x.xml.text import escaped
 

@@ -10,10 +10,11 @@ from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.notations import WrittenPose
 from hymeko_x.formats.sdf.values import NUMBER, TENSOR, BadText, Field, read_pose
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Inertial, Light
 from hymeko_x.ir.solids import solid_of_colliders
-from hymeko_x.ir.values import IDENTITY, Pose, numbers_text, rotate_tensor, rpy_of
+from hymeko_x.ir.values import IDENTITY, Pose, rotate_tensor, rpy_of
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:

@@ -12,11 +12,12 @@ from hymeko_x.backends.sdf.gears import gears
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.values import BadText, read_pose
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import ROOT, WORLD, numbers_weight
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Camera, Coupling, DofKind, Joint, Layer, Sense, Sensor, Texture
-from hymeko_x.ir.values import IDENTITY, Pose, numbers_text, rotation_angle, rpy_of
+from hymeko_x.ir.values import IDENTITY, Pose, rotation_angle, rpy_of
 from hymeko_x.xml.printing import Tag, foreign_text, put_back
 from hymeko_x.xml.text import attributes_text
 from hymeko_x.xml.unread import COMMENT, FOLLOWING, PRECEDING

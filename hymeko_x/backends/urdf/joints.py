@@ -8,9 +8,10 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
+from hymeko_x.ir.digits import number_text, number_texts, numbers_text
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind, Joint
-from hymeko_x.ir.values import IDENTITY, X, number_text, number_texts, numbers_text, plane_axes, unit
+from hymeko_x.ir.values import IDENTITY, X, plane_axes, unit
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:

@@ -8,8 +8,9 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf.notations import SCALE
+from hymeko_x.ir.digits import number_text, number_texts, numbers_text
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
-from hymeko_x.ir.values import Pose, number_text, number_texts, numbers_text, rotate_tensor
+from hymeko_x.ir.values import Pose, rotate_tensor
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:

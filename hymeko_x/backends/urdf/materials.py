@@ -6,8 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.urdf.notations import DEFINED, Defined
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.parts import Layer, Material, Texture
-from hymeko_x.ir.values import numbers_text
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:

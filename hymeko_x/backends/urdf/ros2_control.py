@@ -12,11 +12,11 @@ from hymeko_x.backends.urdf.rules import with_joints_of_urdf
 from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import urdf as urdf_words
 from hymeko_x.formats.urdf import ros2_control as words
+from hymeko_x.ir.digits import number_text, numbers_text
 from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import ROOT, Extra, end_of, numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Drive, Stance, Tendon
 from hymeko_x.ir.tendons import FIXED
-from hymeko_x.ir.values import number_text, numbers_text
 from hymeko_x.rewrite.mimics import moving_joints
 from hymeko_x.rewrite.transmissions import followers
 from hymeko_x.xml.printing import Tag, ready

@@ -13,11 +13,11 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x.formats.urdf import ros2_control as words
+from hymeko_x.ir.digits import number_text
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Actuator, Drive
-from hymeko_x.ir.values import number_text
 from hymeko_x.rewrite.roots import without
 from hymeko_x.rewrite.transmissions import HARDWARE_INTERFACE, is_transmission
 from hymeko_x.xml.tree import read_numbers

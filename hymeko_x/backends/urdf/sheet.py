@@ -11,9 +11,10 @@ from hymeko_x.backends.urdf.materials import Materials
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
 from hymeko_x.formats.urdf.notations import Style
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import ROOT, numbers_weight
 from hymeko_x.ir.parts import Coupling, Mesh
-from hymeko_x.ir.values import NO_ROTATION, ZERO, numbers_text, rpy_of
+from hymeko_x.ir.values import NO_ROTATION, ZERO, rpy_of
 from hymeko_x.xml.printing import put_back
 
 if TYPE_CHECKING:

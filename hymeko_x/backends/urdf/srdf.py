@@ -8,9 +8,9 @@ from msgspec.structs import replace
 
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import srdf
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, end_of, numbers_weight
 from hymeko_x.ir.parts import Body, Contact, PoseSet, Stance
-from hymeko_x.ir.values import numbers_text
 from hymeko_x.rewrite.roots import without
 from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.printing import Tag, render

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.urdf import notations
 from hymeko_x.formats.urdf.notations import Reduction, TypeAs
+from hymeko_x.ir.digits import number_text, numbers_text
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, Drive
-from hymeko_x.ir.values import number_text, numbers_text
 from hymeko_x.xml.printing import Tag
 from hymeko_x.xml.text import escaped, is_name
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.dynamics.writers.modelica import identifier
 from hymeko_x.dynamics.writers.program import description, program_of
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.digits import number_text
 from hymeko_x.xml.text import escaped
 
 if TYPE_CHECKING:

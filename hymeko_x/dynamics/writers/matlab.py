@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.dynamics.writers.program import description
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.digits import number_text
 
 if TYPE_CHECKING:
     from hymeko_x.dynamics.linear import StateSpace

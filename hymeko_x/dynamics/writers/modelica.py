@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from hymeko_x.dynamics.writers.program import description, program_of
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.digits import number_text
 
 if TYPE_CHECKING:
     from hymeko_x.dynamics.system import System

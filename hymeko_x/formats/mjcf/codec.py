@@ -16,15 +16,8 @@ from msgspec import Struct
 
 from hymeko_x.formats.mjcf.classes import ANY_TURN, TURNS
 from hymeko_x.ir.decimals import shortest
-from hymeko_x.ir.values import (
-    NO_ROTATION,
-    ZERO,
-    Pose,
-    Written,
-    number_text,
-    numbers_text,
-    pose,
-)
+from hymeko_x.ir.digits import number_text, numbers_text
+from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Written, pose
 from hymeko_x.ir.written import pose_as_written
 from hymeko_x.xml.tree import read_numbers
 

@@ -18,16 +18,11 @@ from hymeko_x.formats.mjcf.codec import (
     seen_numbers,
     vector_of,
 )
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.parts import (
     DofKind,
 )
-from hymeko_x.ir.values import (
-    ZERO,
-    Written,
-    Z,
-    numbers_text,
-    unit,
-)
+from hymeko_x.ir.values import ZERO, Written, Z, unit
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:

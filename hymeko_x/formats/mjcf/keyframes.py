@@ -12,9 +12,10 @@ from msgspec.structs import replace
 from hymeko_x.formats.mjcf import NAME
 from hymeko_x.formats.mjcf.lengths import COORDINATES, controls_of, is_keyframes
 from hymeko_x.formats.mjcf.tree import parse_text, verbatim
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism, end_of, numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Stance
-from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, numbers_text
+from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from functools import cache
 from typing import NamedTuple
 
 from hymeko_x.formats.mjcf.tree import parse_text
+from hymeko_x.ir.digits import number_text
 from hymeko_x.ir.notations import Notation, flag, word
-from hymeko_x.ir.values import number_text
 
 
 @cache

@@ -32,6 +32,7 @@ from hymeko_x.formats.mjcf.codec import (
     write_turn,
     written_turn,
 )
+from hymeko_x.ir.digits import number_text, numbers_text
 from hymeko_x.ir.parts import (
     Box,
     Capsule,
@@ -53,8 +54,6 @@ from hymeko_x.ir.values import (
     apply,
     compose,
     inverse,
-    number_text,
-    numbers_text,
     rotate,
     rotate_tensor,
 )

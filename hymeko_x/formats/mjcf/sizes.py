@@ -10,8 +10,8 @@ from msgspec.structs import replace
 
 from hymeko_x.formats.mjcf import NAME
 from hymeko_x.formats.mjcf.tree import parse_text, verbatim
+from hymeko_x.ir.digits import number_text
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.values import number_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

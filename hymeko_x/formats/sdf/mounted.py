@@ -10,8 +10,9 @@ from hymeko_x.formats.sdf.notations import WrittenPose
 from hymeko_x.formats.sdf.sensors import CAMERA_TURN, HFOV, IMAGE
 from hymeko_x.formats.sdf.values import NUMBER, BadText, read_pose
 from hymeko_x.ir.decimals import shortest
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.parts import Camera, Frame
-from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, numbers_text, rpy_of
+from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, rpy_of
 from hymeko_x.xml.printing import Tag, ready
 
 if TYPE_CHECKING:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.notations import Notation, flag, word
-from hymeko_x.ir.values import Pose, numbers_text
+from hymeko_x.ir.values import Pose
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:

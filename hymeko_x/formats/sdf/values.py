@@ -6,8 +6,9 @@ import math
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from hymeko_x.ir.digits import number_text, numbers_text
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Sphere
-from hymeko_x.ir.values import ZERO, Pose, number_text, numbers_text, pose, pose_from_rpy
+from hymeko_x.ir.values import ZERO, Pose, pose, pose_from_rpy
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir import values
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.notations import Notation, flag, word, words
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ ARTICULATED = flag("usd.articulated")
 
 
 def _pose_text(pose: values.Pose) -> str:
-    return values.numbers_text((*pose.xyz, *pose.quat))
+    return numbers_text((*pose.xyz, *pose.quat))
 
 
 def _pose(text: str) -> values.Pose | None:

@@ -15,8 +15,9 @@ from hymeko_x.frontends.hymeko.builder import sign_of
 from hymeko_x.frontends.hymeko.lumped import take_compliant, with_compliance
 from hymeko_x.frontends.hymeko.sharing import FOLLOWS, follow
 from hymeko_x.ir import parts
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
-from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Vec3, Written, numbers_text, rotate, scaled, unit
+from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Vec3, Written, rotate, scaled, unit
 from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, Ref
 
 if TYPE_CHECKING:

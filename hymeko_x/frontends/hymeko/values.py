@@ -11,7 +11,8 @@ from msgspec import Struct, field
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.hymeko.units import BASE_UNITS, MOST_DIGITS, fits, fitting_units, rounded, unit_dimension, unit_factor
-from hymeko_x.ir.values import Pose, Vec3, Written, numbers_text, pose, pose_from_rpy
+from hymeko_x.ir.digits import numbers_text
+from hymeko_x.ir.values import Pose, Vec3, Written, pose, pose_from_rpy
 from hymeko_x.ir.written import NOTATIONS, number_count, pose_as_written
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, Query, Ref, Value, is_field, is_list, origin_of
 

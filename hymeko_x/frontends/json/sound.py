@@ -12,9 +12,10 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
 from hymeko_x.formats.json.document import PARTS
+from hymeko_x.ir.digits import are_numbers
 from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.mechanism import WORLD, Id
-from hymeko_x.ir.values import Pose, are_numbers
+from hymeko_x.ir.values import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

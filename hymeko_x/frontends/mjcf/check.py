@@ -16,7 +16,7 @@ from hymeko_x.formats.mjcf.classes import ANY_TURN
 from hymeko_x.formats.mjcf.schema import EXCLUSIVE, REMOVED, attributes_of, children, kinds_of, schema
 from hymeko_x.formats.mjcf.tree import COMMENT
 from hymeko_x.frontends.mjcf.rules import complaint, limits_of, rules_of
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.digits import number_text
 from hymeko_x.source import file_stem
 from hymeko_x.xml.tree import read_numbers
 

@@ -13,8 +13,9 @@ from hymeko_x.formats.sdf.notations import WrittenPose
 from hymeko_x.formats.sdf.values import BadText, is_same_text, is_unit, read_pose
 from hymeko_x.frontends.sdf.frames import Frames
 from hymeko_x.ir.builder import Builder
+from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Provenance
-from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, Pose, numbers_text
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, Pose
 from hymeko_x.xml.unread import Unread
 
 if TYPE_CHECKING:
