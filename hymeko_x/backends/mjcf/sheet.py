@@ -171,7 +171,7 @@ class MjcfSheet(Struct):
                 texts = group.write(value, self.settings)
                 for name, text in ({**texts, **undone(group, base, texts)} if base else texts).items():
                     if base.get(name) != text:
-                        found[name] = self._unsigned(name, text) if "-0" in text else text
+                        found[name] = self._unsigned(name, text)
         return found
 
     def _means(self, group: Group, attributes: Mapping[str, str], value: Any) -> bool:
@@ -182,7 +182,7 @@ class MjcfSheet(Struct):
 
     def _unsigned(self, name: str, text: str) -> str:
         """Numbers without the sign of a zero, which only robots from MJCF keep."""
-        if self.from_mjcf or not ("-0 " in text or text.endswith("-0")) or name in _REFERENCES:
+        if "-0" not in text or self.from_mjcf or name in _REFERENCES:
             return text
         return _SIGNED_ZERO.sub("0", text)
 
