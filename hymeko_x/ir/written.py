@@ -1,9 +1,9 @@
 """Rotations as authors write them: which rotation a notation means. Angles in rad; quaternions (w, x, y, z).
 
 The kinds of :class:`hymeko_x.ir.values.Written` that a pose may have: ``quat`` (4 numbers, any length), ``rpy`` (3),
-``euler:xyz`` (3, with any sequence; lower case turns about moving axes, upper case about fixed ones), ``axisangle`` (4),
-``xyaxes`` (6), ``zaxis`` (3), ``fromto`` (two points: the z axis leads from the second to the first, the origin is
-midway) and ``dir`` (3: where a light shines, its -z).
+``euler:xyz`` (3, with any sequence; lower case turns about moving axes, upper case about fixed ones, so that ``XYZ`` means
+``rpy``), ``axisangle`` (4), ``xyaxes`` (6), ``zaxis`` (3), ``fromto`` (two points: the z axis leads from the second to the
+first, the origin is midway) and ``dir`` (3: where a light shines, its -z).
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.decimals import clean_quat, clean_vector, shortest, shortest_of
 from hymeko_x.ir.values import (
     NO_ROTATION,
+    ZERO,
     Pose,
     Written,
     X,
@@ -49,12 +50,16 @@ def number_count(kind: str) -> int | None:
 def pose_as_written(xyz: Vec3, written: Written) -> Pose:
     """The pose at ``xyz`` in m with the rotation that was written; for ``fromto`` the position follows from the points.
 
+    Angles about fixed axes are ``rpy``, as URDF has them; zeros, which URDF has not, keep their notation.
+
     Raises: ZeroDivisionError for numbers that are no rotation.
     """
     if written.kind == "fromto":
         first, second = ends_of(written)
         x, y, z = shortest_of(scaled(add(first, second), 0.5), max(map(abs, written.numbers)))
         return Pose((x, y, z), quat_from_direction(add(first, scaled(second, -1.0))), written)
+    if written.kind == "euler:XYZ" and written.numbers != ZERO:
+        written = Written("rpy", written.numbers)
     return Pose(xyz, quat_as_written(written), written)
 
 

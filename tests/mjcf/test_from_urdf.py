@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import trimesh
 
+import hymeko_x as hx
 from hymeko_x.rewrite import Options
 from tests.mjcf.convert import convert_text, tensor_in_body, worst_pose_error
 
@@ -131,6 +132,15 @@ def test_numbers_arrive_to_the_last_digit() -> None:
     model = convert_text(robot(link("a"), link("b"), joint("1", "a", "b", said))).model()
     assert list(model.body_pos[2]) == [0.1234567890123456, 1e-17, -0.3333333333333333]
     assert model.dof_damping[0] == 0.12345678901234568
+
+
+def test_roll_pitch_and_yaw_come_back_without_a_record_of_them(tmp_path: Path) -> None:
+    turned = '<origin xyz="0 0 1" rpy="0.3 0 -1.2"/><axis xyz="0 0 1"/>'
+    (tmp_path / "arm.urdf").write_text(robot(link("a"), link("b"), joint("j", "a", "b", turned)))
+    result = hx.convert(tmp_path / "arm.urdf", tmp_path / "arm.xml", keep="beside")
+    assert 'euler="0.3 0 -1.2"' in result.package.main.decode()
+    assert "velocity" in result.package.kept
+    assert "turn" not in result.package.kept
 
 
 def test_limits_damping_friction_and_effort_arrive() -> None:

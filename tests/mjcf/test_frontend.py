@@ -11,7 +11,7 @@ from mjmodels import read_text
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Actuator, Body, Box, Capsule, DofKind, Ellipsoid, Geometry, Loop, MeshShape, Plane, Role, Shape
-from hymeko_x.ir.values import compose, inverse
+from hymeko_x.ir.values import Written, compose, inverse, pose_from_rpy
 
 
 def in_world(content: str, head: str = "") -> str:
@@ -104,6 +104,12 @@ def test_an_own_orientation_replaces_that_of_the_class_whatever_its_kind() -> No
 def test_every_notation_of_an_orientation(head: str, said: str, quat: tuple[float, ...]) -> None:
     robot = read_text(in_world(f'<body name="b" {said}/>', head))
     assert robot.parent_joint[Id("body", "b")].parent_pose.quat == pytest.approx(quat, abs=1e-7)
+
+
+def test_angles_about_fixed_axes_are_roll_pitch_and_yaw() -> None:
+    robot = read_text(in_world('<body name="b" euler=".1 .2 .3"/>', '<compiler angle="radian" eulerseq="XYZ"/>'))
+    assert robot.parent_joint[Id("body", "b")].parent_pose == pose_from_rpy((0.0, 0.0, 0.0), (0.1, 0.2, 0.3))
+    assert robot.parent_joint[Id("body", "b")].parent_pose.written == Written("rpy", (0.1, 0.2, 0.3))
 
 
 @pytest.mark.parametrize(("word", "whole"), [("box", Box((0.08, 0.08, 2.0))), ("ellipsoid", Ellipsoid((0.04, 0.04, 1.0)))])

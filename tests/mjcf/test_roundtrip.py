@@ -30,6 +30,8 @@ ROBOTS = {
         <worldbody><body><joint limited="true" range="0 90"/><joint limited="false" range="0 9"/><geom size=".1"/></body></worldbody>""",
     "every orientation": """<compiler eulerseq="zyX"/><worldbody><body euler="12.3 45.6 78.9"/><body axisangle="1 2 3 40"/>
         <body xyaxes="1 .1 0 .2 1 .3"/><body zaxis="1 -2 .5"/><body quat="1 2 -3 .5"/><body quat="-1 0 0 0"/></worldbody>""",
+    "angles about fixed axes": """<compiler eulerseq="XYZ"/><worldbody><body euler="12.3 45.6 78.9"><body euler="0 0 0"/></body>
+        <geom size=".1" euler="90 0 0"/></worldbody>""",
     "turned inertia": """<worldbody><body><freejoint/>
         <inertial pos=".1 .2 .3" mass="2" diaginertia=".3 .2 .4" euler="10 20 30"/></body></worldbody>""",
     "inertia in a frame": """<worldbody><body><freejoint/><geom size=".1"/><frame pos="1 2 3" euler="0 0 30">

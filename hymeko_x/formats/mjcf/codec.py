@@ -174,11 +174,11 @@ def read_pose(attributes: Mapping[str, str], settings: Settings) -> Pose:
 
 def write_turn(quat: tuple[float, ...], written: Written | None, settings: Settings) -> dict[str, str]:
     """The orientation as its author wrote it, else as a quaternion; nothing for no rotation."""
-    if written is None or written.kind == "rpy":
+    if written is None or (written.kind == "rpy" and (settings.plain_turns or settings.eulerseq != "XYZ")):
         return {} if quat == NO_ROTATION else _plain_turn(quat, written) if settings.plain_turns else {"quat": numbers_text(quat)}
     kind, numbers = written
-    if kind == f"euler:{settings.eulerseq}":
-        return {"euler": " ".join([angle_text(angle, settings.degree) for angle in numbers])}
+    if kind in (f"euler:{settings.eulerseq}", "rpy"):
+        return {"euler": " ".join(map(degrees_text, numbers)) if settings.degree else numbers_text(numbers)}
     if kind == "axisangle":
         return {"axisangle": f"{numbers_text(numbers[:3])} {angle_text(numbers[3], settings.degree)}"}
     if kind in ("quat", "xyaxes", "zaxis"):
