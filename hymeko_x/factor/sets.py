@@ -72,8 +72,6 @@ def share(rows: Sequence[Row], costs: Costs) -> list[Shared]:
 def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], list[int]] | None:
     """The set that saves most, and the places of the rows that have all of it."""
     owners = _owners(rows)
-    if not _may_save(rows, owners, costs, use):
-        return None
     best, most = None, costs.least - 1
     for pairs, members in _ranked(rows, owners):
         fields = sum([len(name) + len(text) + costs.field for name, text in pairs])
@@ -81,13 +79,6 @@ def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], lis
         if saved > most:
             best, most = (pairs, members), saved
     return None if best is None else (best[0], sorted(best[1]))
-
-
-def _may_save(rows: list[Row], owners: Mapping[Pair, Members], costs: Costs, use: int) -> bool:
-    """Whether the fields of a row, each written once instead of every time, save enough for a definition and for two rows that name it."""
-    least = costs.least + costs.definition + 2 * use
-    saved = {pair: (len(members) - 1) * (len(pair[0]) + len(pair[1]) + costs.field) for pair, members in owners.items()}
-    return sum(saved.values()) >= least and max([sum([saved.get(pair, 0) for pair in row]) for row in rows]) >= least
 
 
 def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:

@@ -265,7 +265,8 @@ def _elements(root: Tag) -> list[Tag]:
     while stack:
         tag = stack.pop()
         found.append(tag)
-        stack += [child for child in reversed(tag.children) if isinstance(child, Tag)]
+        if tag.children:
+            stack += [child for child in reversed(tag.children) if isinstance(child, Tag)]
     return found
 
 
