@@ -7,6 +7,7 @@ exact and deterministic, as :mod:`hymeko_x.factor` is for forms with an order an
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from heapq import nsmallest
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
 Pair = tuple[str, str]
 """The name and the text of a field."""
@@ -22,6 +23,8 @@ Row = list[Pair]
 """The fields of one element."""
 Members = frozenset[int]
 """The numbers of the rows with a field."""
+Owners = Mapping[Pair, Members]
+"""The rows with a field, for every field that more than one of these rows has."""
 
 _NO_MEMBERS: Members = frozenset()
 _SEEDS = 24
@@ -50,35 +53,30 @@ class Shared(Struct, frozen=True):
 
 def share(rows: Sequence[Row], costs: Costs) -> list[Shared]:
     """Sets that shorten the rows, each behind the one that it refines. A row is in one set, and in those that this one refines."""
-    left = [list(row) for row in rows]
     found: list[Shared] = []
-    queue: list[tuple[list[int], int | None]] = [(list(range(len(rows))), None)]
-    for numbers, parent in queue:
-        while len(numbers) > 1 and len(found) < _MOST:
-            best = _best([left[number] for number in numbers], costs, use=costs.use if parent is None else 0)
+    queue: list[tuple[Owners, int | None]] = [(_owners(rows), None)]
+    for owners, parent in queue:
+        while owners and len(found) < _MOST:
+            best = _best(rows, owners, costs, use=costs.use if parent is None else 0)
             if best is None:
                 break
-            pairs, places = best
-            members = [numbers[place] for place in places]
-            for number in members:
-                left[number] = [pair for pair in left[number] if pair not in pairs]
-            queue.append((members, len(found)))
-            found.append(Shared(pairs, tuple(members), parent))
-            gone = set(members)
-            numbers = [number for number in numbers if number not in gone]
+            pairs, members = best
+            inside = {pair: numbers & members for pair, numbers in owners.items() if pair not in pairs}
+            queue.append((_of_several(inside), len(found)))
+            found.append(Shared(pairs, tuple(sorted(members)), parent))
+            owners = _of_several({pair: numbers - members for pair, numbers in owners.items()})
     return found
 
 
-def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], list[int]] | None:
-    """The set that saves most, and the places of the rows that have all of it."""
-    owners = _owners(rows)
+def _best(rows: Sequence[Row], owners: Owners, costs: Costs, use: int) -> tuple[frozenset[Pair], Members] | None:
+    """The set that saves most, and the rows that have all of it."""
     best, most = None, costs.least - 1
     for pairs, members in _ranked(rows, owners):
         fields = sum([len(name) + len(text) + costs.field for name, text in pairs])
         saved = (len(members) - 1) * fields - len(members) * use - costs.definition
         if saved > most:
             best, most = (pairs, members), saved
-    return None if best is None else (best[0], sorted(best[1]))
+    return best
 
 
 def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:
@@ -86,7 +84,7 @@ def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:
     return [shared for shared, _ in _ranked(rows, _owners(rows))]
 
 
-def _ranked(rows: Sequence[Row], owners: Mapping[Pair, Members]) -> list[tuple[frozenset[Pair], Members]]:
+def _ranked(rows: Sequence[Row], owners: Owners) -> list[tuple[frozenset[Pair], Members]]:
     """The same with the rows that have all of a set; ``owners`` are those of each field."""
 
     def common(members: Members) -> frozenset[Pair]:
@@ -111,13 +109,18 @@ def _ranked(rows: Sequence[Row], owners: Mapping[Pair, Members]) -> list[tuple[f
     return [(closed[members], members) for members in worthy[:_SEEDS]]
 
 
-def _owners(rows: Sequence[Row]) -> dict[Pair, Members]:
+def _owners(rows: Sequence[Row]) -> Owners:
     """For every field that occurs more than once the rows that have it."""
     found: dict[Pair, list[int]] = defaultdict(list)
     for number, row in enumerate(rows):
         for pair in row:
             found[pair].append(number)
-    return {pair: frozenset(members) for pair, members in found.items() if len(members) > 1}
+    return _of_several({pair: frozenset(numbers) for pair, numbers in found.items()})
+
+
+def _of_several(owners: Owners) -> Owners:
+    """The fields that more than one row has."""
+    return {pair: members for pair, members in owners.items() if len(members) > 1}
 
 
 def _worth(members: Members, shared: Iterable[Pair]) -> int:

@@ -10,7 +10,6 @@ it did not have, so that MuJoCo compiles the same model.
 from __future__ import annotations
 
 import re
-from collections import defaultdict
 from operator import itemgetter
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -24,7 +23,7 @@ from hymeko_x.formats.mjcf.classes import PARTIAL, Classes
 from hymeko_x.formats.mjcf.roles import ATTRIBUTES
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.ir.names import free_name
-from hymeko_x.ir.parts import Shape
+from hymeko_x.ir.parts import Body, Shape
 from hymeko_x.xml.printing import Tag, ready
 
 if TYPE_CHECKING:
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.backends.mjcf.sheet import MjcfSheet
     from hymeko_x.factor.sets import Row
+    from hymeko_x.ir.mechanism import Mechanism
 
 _ROLES: Mapping[str, Mapping[str, str]] = MappingProxyType({name: ATTRIBUTES[role] for role, name in CLASSES.items()})
 """The attributes of geoms that are only seen and of those that only touch."""
@@ -208,22 +208,17 @@ def _reasons(element: Tag) -> Row:
 
 def settle(sheet: MjcfSheet, place: int) -> None:
     """What all elements of the written document have in common: the classes at their place behind the settings, and <compiler>."""
-    tags = _elements(sheet.root)
-    by_name: dict[str, list[Tag]] = defaultdict(list)
-    for tag in tags:
-        by_name[tag.name].append(tag)
-    compiler = by_name["compiler"][0]
+    tags, compiler = _elements(sheet.root), sheet.root.child("compiler")
     if any("euler" in tag.attributes for tag in tags):
         compiler.attributes["eulerseq"] = sheet.settings.eulerseq
-    _settle_folders(by_name, compiler)
-    tags = [tag for tag in tags if tag.owner is not None]
-    _write_defaults(sheet, tags, place, massless=_need_no_mass(sheet, by_name["body"]))
+    _settle_folders([tag for tag in tags if "file" in tag.attributes], compiler)
+    _write_defaults(sheet, [tag for tag in tags if tag.owner is not None], place)
 
 
-def _write_defaults(sheet: MjcfSheet, tags: list[Tag], place: int, *, massless: bool) -> None:
+def _write_defaults(sheet: MjcfSheet, tags: list[Tag], place: int) -> None:
     """<default> with the classes of the elements."""
     roles = {tag.attributes.get("class") for tag in tags if tag.name == "geom"}
-    shared = {(MAIN, "geom"): dict(_MASSLESS)} if massless else {}
+    shared = {(MAIN, "geom"): dict(_MASSLESS)} if _need_no_mass(sheet.mechanism) else {}
     shared |= {(role, "geom"): dict(attributes) for role, attributes in _ROLES.items() if role in roles}
     inside: dict[str, list[str]] = {MAIN: [role for role in _ROLES if role in roles]}
     for found in shared_attributes(tags).classes:
@@ -234,27 +229,21 @@ def _write_defaults(sheet: MjcfSheet, tags: list[Tag], place: int, *, massless: 
         sheet.root.children[place:place] = ["", _class_tag(MAIN, {}, shared, inside)]
 
 
-def _need_no_mass(sheet: MjcfSheet, bodies: list[Tag]) -> bool:
-    """Whether geoms have to be massless: MuJoCo would compute a mass from them, or the robot gives their density as 0."""
-    is_given = any(shape.density == 0 for _, shape, _ in sheet.mechanism.edges(Shape))
-    return is_given or any(map(_has_geoms_alone, bodies))
+def _need_no_mass(mechanism: Mechanism) -> bool:
+    """Whether geoms have to be massless: MuJoCo would compute the mass of a body from them, or the robot gives their density as 0."""
+    is_given = any(shape.density == 0 for _, shape, _ in mechanism.edges(Shape))
+    return is_given or any(body.inertial is None and key in mechanism.shapes for key, body in mechanism.vertices(Body))
 
 
-def _has_geoms_alone(body: Tag) -> bool:
-    """Whether MuJoCo would compute the mass of a body from its geoms."""
-    kinds = {child.name for child in body.children if isinstance(child, Tag)}
-    return "geom" in kinds and "inertial" not in kinds
-
-
-def _settle_folders(by_name: Mapping[str, list[Tag]], compiler: Tag) -> None:
-    """<compiler> names the folder of all meshes, and that of all textures, where there are three or more."""
+def _settle_folders(tags: list[Tag], compiler: Tag) -> None:
+    """<compiler> names the folder of all meshes, and that of all textures, where there are three or more. ``tags`` are those with files."""
     for word, kind in (("meshdir", "mesh"), ("texturedir", "texture")):
-        tags = [tag for tag in by_name.get(kind, ()) if "file" in tag.attributes]
-        folders = {tag.attributes["file"].rpartition("/")[0] for tag in tags}
-        folder = next(iter(folders)) if len(folders) == 1 and len(tags) >= _FEWEST_FILES else ""
+        found = [tag for tag in tags if tag.name == kind]
+        folders = {tag.attributes["file"].rpartition("/")[0] for tag in found}
+        folder = next(iter(folders)) if len(folders) == 1 and len(found) >= _FEWEST_FILES else ""
         if folder:
             compiler.attributes[word] = folder
-            for tag in tags:
+            for tag in found:
                 tag.attributes["file"] = tag.attributes["file"].removeprefix(f"{folder}/")
 
 

@@ -159,7 +159,7 @@ def read_origin(node: Node, key: Id, builder: UrdfBuilder, *, turned: bool = Tru
         builder.follow(key, is_written, follows=False)
         return IDENTITY
     lacks_xyz, lacks_rpy = "xyz" not in origin.attributes, "rpy" not in origin.attributes
-    xyz = _take_vector(origin, "xyz", builder)
+    xyz: Any = take_numbers(origin, "xyz", 3, builder, instead="0 0 0 is used") or ZERO
     unturned = not turned and read_numbers(origin.attributes.get("rpy", "")) != ZERO
     found = Pose(xyz) if unturned else _turned(origin, xyz, builder)
     is_in_place, is_unturned = found.xyz == ZERO, found.written is None and found.quat == NO_ROTATION
@@ -173,18 +173,13 @@ def read_origin(node: Node, key: Id, builder: UrdfBuilder, *, turned: bool = Tru
 
 
 def _turned(origin: Node, xyz: Vec3, builder: UrdfBuilder) -> Pose:
-    rpy = _take_vector(origin, "rpy", builder)
+    rpy: Any = take_numbers(origin, "rpy", 3, builder, instead="0 0 0 is used") or ZERO
     if rpy == ZERO and builder.version != "1.0":
         quat = take_numbers(origin, "quat_xyzw", 4, builder, instead="no rotation is used")
         if quat is not None and any(quat):
             qx, qy, qz, qw = quat
             return pose(xyz, (qw, qx, qy, qz))
     return pose_from_rpy(xyz, rpy)
-
-
-def _take_vector(origin: Node, name: str, builder: UrdfBuilder) -> Vec3:
-    numbers: Any = take_numbers(origin, name, 3, builder, instead="0 0 0 is used")
-    return numbers or ZERO
 
 
 # ---- numbers -----------------------------------------------------------------------------------------------------------------

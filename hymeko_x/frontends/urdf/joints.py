@@ -203,11 +203,12 @@ def _read_limits(joint: Node, key: Id, builder: UrdfBuilder) -> Limits:
         return UNLIMITED
     missing = [name for name in ("effort", "velocity") if name not in node.attributes]
     without = [name for name in _BOUNDS if name not in node.attributes]
-    bounds = dict(zip(_BOUNDS, _take_limits(node, _BOUNDS, builder), strict=True)) | dict.fromkeys(without, 0.0)
+    lower, upper, *rates = _take_limits(node, _BOUNDS + _RATES, builder)
+    bounds = {"lower": lower, "upper": upper} | dict.fromkeys(without, 0.0)
     for name, bound in bounds.items():
         if bound == 0.0:
             builder.follow(key, notations.without(name), follows=name in without)
-    limits = Limits(*bounds.values(), *_take_limits(node, _RATES, builder))
+    limits = Limits(*bounds.values(), *rates)
     _check_limits(joint, node, limits, missing, builder)
     return limits
 
