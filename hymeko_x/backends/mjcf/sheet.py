@@ -163,16 +163,14 @@ class MjcfSheet(Struct):
         start = f"{prefix}@"
         written = {name.removeprefix(start): text for name, text in notations.items() if name.startswith(start)} if notations else {}
         for group, inherited in self.inherited.of(groups, base, self.settings):
-            value = values[group.key]
-            context = _chosen({**kept, **found}, group.needs) if group.needs and (kept or found) else _EMPTY
+            value, needs = values[group.key], group.needs
+            context = _chosen({**kept, **found}, needs) if needs and not (needs.isdisjoint(found) and needs.isdisjoint(kept)) else _EMPTY
             if written and (noted := _chosen(written, group.names)) and self._means(group, merge({**base, **context}, noted), value):
                 found |= noted
             elif not (self._means(group, {**base, **context}, value) if context else group.same(inherited, value)):
                 texts = group.write(value, self.settings)
-                for name, text in ({**texts, **undone(group, base, texts)} if base else texts).items():
-                    if base.get(name) != text:
-                        found[name] = self._unsigned(name, text)
-        return found
+                found |= _others({**texts, **undone(group, base, texts)}, base) if base else texts
+        return found if self.from_mjcf else _unsigned(found)
 
     def _means(self, group: Group, attributes: Mapping[str, str], value: Any) -> bool:
         try:
@@ -180,15 +178,10 @@ class MjcfSheet(Struct):
         except BadAttribute:
             return False
 
-    def _unsigned(self, name: str, text: str) -> str:
-        """Numbers without the sign of a zero, which only robots from MJCF keep."""
-        if "-0" not in text or self.from_mjcf or name in _REFERENCES:
-            return text
-        return _SIGNED_ZERO.sub("0", text)
-
     def numbers(self, values: tuple[float, ...]) -> str:
         """The text of these numbers."""
-        return self._unsigned("", numbers_text(values))
+        text = numbers_text(values)
+        return text if self.from_mjcf else _SIGNED_ZERO.sub("0", text)
 
     def parameters(self, parameters: Parameters, path: str, base: Mapping[str, str]) -> dict[str, str]:
         """The parameters that are attributes of the element of this place of the schema, as far as its class does not give them."""
@@ -247,6 +240,18 @@ class MjcfSheet(Struct):
         for _, extra in items:
             tag = _as_tag(extra)
             self.root.children += [tag] if isinstance(tag, str) else ["", tag]
+
+
+def _unsigned(attributes: dict[str, str]) -> dict[str, str]:
+    """Attributes with numbers without the sign of a zero, which only robots from MJCF keep."""
+    if "-0" not in " ".join(attributes.values()):
+        return attributes
+    return {name: text if name in _REFERENCES else _SIGNED_ZERO.sub("0", text) for name, text in attributes.items()}
+
+
+def _others(attributes: Mapping[str, str], base: Mapping[str, str]) -> dict[str, str]:
+    """The attributes that a class does not give in the same way."""
+    return {name: text for name, text in attributes.items() if base.get(name) != text}
 
 
 def _chosen(attributes: Mapping[str, str], names: Iterable[str]) -> dict[str, str]:

@@ -68,7 +68,7 @@ class Group(Struct, frozen=True, eq=False):
     read: Callable[[Mapping[str, str], Settings], Any]
     write: Callable[[Any, Settings], dict[str, str]]
     seen: Callable[[Mapping[str, str], Settings], Any]
-    needs: tuple[str, ...] = ()
+    needs: frozenset[str] = frozenset()
     exact: bool = False
     same: Callable[[Any, Any], bool] = eq
 
@@ -195,11 +195,12 @@ def _plain_turn(quat: tuple[float, ...], rpy: Written | None) -> dict[str, str]:
 
 def _with_ones(quat: tuple[float, ...]) -> tuple[float, ...]:
     """A quarter turn as ``1 0 0 1``, which is the same rotation; every other one as it is."""
-    sizes = {abs(value) for value in quat if value}
-    return tuple([math.copysign(1.0, value) if value else 0.0 for value in quat]) if sizes == {_HALF_ROOT} else quat
+    if not _OF_QUARTER_TURNS.issuperset(map(abs, quat)):
+        return quat
+    return tuple([math.copysign(1.0, value) if value else 0.0 for value in quat])
 
 
-_HALF_ROOT = math.sqrt(0.5)
+_OF_QUARTER_TURNS = frozenset((0.0, math.sqrt(0.5)))
 
 
 def write_pose(value: Pose, settings: Settings) -> dict[str, str]:

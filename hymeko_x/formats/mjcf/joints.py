@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 DOF_KINDS = {"hinge": DofKind.HINGE, "slide": DofKind.SLIDE, "ball": DofKind.BALL, "free": DofKind.FREE}
 _DOF_WORDS = {kind: word for word, kind in DOF_KINDS.items()}
+_TYPE = frozenset(("type",))
 _TURNING = (None, "hinge", "ball")
 
 
@@ -80,7 +81,7 @@ def _motion(name: str) -> Group:
     def read_both(attributes: Mapping[str, str], settings: Settings) -> tuple[float, DofKind]:
         return read(attributes, settings), read_kind(attributes, settings)
 
-    return Group(name, (name,), read_both, write, seen_numbers(name, 0.0), ("type",))
+    return Group(name, (name,), read_both, write, seen_numbers(name, 0.0), _TYPE)
 
 
 Span = tuple[float, float] | None
@@ -125,7 +126,7 @@ def span(name: str, flag: str, *, angular: bool = False) -> Group:
         found, word = read_numbers(attributes.get(name, "0 0")) or (0.0, 0.0), attributes.get(flag, "auto")
         return found, word == "true" or (word == "auto" and settings.autolimits and found[0] < found[-1])
 
-    return Group(name, (name, flag), read, write, seen, ("type",) if angular else ())
+    return Group(name, (name, flag), read, write, seen, _TYPE if angular else frozenset())
 
 
 KIND = Group(
@@ -141,7 +142,7 @@ AXIS = Group(
     _read_axis,
     _write_axis,
     lambda attributes, settings: read_numbers(attributes.get("axis", "0 0 1")),
-    ("type",),
+    _TYPE,
 )
 ANCHOR = Group(
     "pos",

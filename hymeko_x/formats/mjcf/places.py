@@ -200,7 +200,7 @@ PLACE = Group(
     _read_place,
     _write_place,
     _seen_place,
-    ("mesh", "hfield"),
+    frozenset(("mesh", "hfield")),
     same=lambda a, b: a == b and a.pose.written == b.pose.written,
 )
 
@@ -232,7 +232,7 @@ def _read_site_size(attributes: Mapping[str, str], settings: Settings) -> tuple[
     return found
 
 
-SITE = (SITE_POSE, replace(reals("size", 1, 3), read=_read_site_size, needs=("type", "fromto")))
+SITE = (SITE_POSE, replace(reals("size", 1, 3), read=_read_site_size, needs=frozenset(("type", "fromto"))))
 
 
 def seen_from(group: Group, frame: Pose) -> Group:
