@@ -10,6 +10,8 @@ it did not have, so that MuJoCo compiles the same model.
 from __future__ import annotations
 
 import re
+from collections import Counter
+from itertools import chain
 from operator import itemgetter
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -122,11 +124,9 @@ def _share_among_most(tag: str, around: str, group: list[Tag], defaults: Default
     """An attribute that most elements have goes into the class that all have anyway; the others have their own."""
     texts: dict[str, dict[str, int]] = {}
     given = _SHARED[tag] - _OWN
-    for element in group:
-        for name, text in element.attributes.items():
-            if name in given and (name, text) != _USUAL_AXIS:
-                counts = texts.setdefault(name, {})
-                counts[text] = counts.get(text, 0) + 1
+    for (name, text), uses in Counter(chain.from_iterable([element.attributes.items() for element in group])).items():
+        if name in given and (name, text) != _USUAL_AXIS:
+            texts.setdefault(name, {})[text] = uses
     own = {}
     for name, counts in texts.items():
         text, uses = max(counts.items(), key=itemgetter(1))
@@ -171,7 +171,10 @@ def _telling_words(group: list[Tag]) -> list[list[str]]:
 
 
 def _common(elements: list[Tag]) -> frozenset[tuple[str, str]]:
-    return frozenset(_row(elements[0])).intersection(*map(_row, elements[1:]))
+    """The attributes that a class may have and all of these elements have, which are of one name."""
+    allowed = _SHARED[elements[0].name]
+    shared = set(elements[0].attributes.items()).intersection(*[element.attributes.items() for element in elements[1:]])
+    return frozenset([pair for pair in shared if pair[0] in allowed])
 
 
 def _names(elements: list[Tag]) -> list[str]:

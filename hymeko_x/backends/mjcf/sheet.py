@@ -129,8 +129,9 @@ class MjcfSheet(Struct):
         found = self.mechanism.extras.get(key, ())
         if not found or self.from_mjcf or key.kind in _NAMED_APART:
             return found
-        known = kinds_of(_PLAIN.get(key.kind, "")).keys() - _OF_ROOTS
-        return tuple([extra for extra in found if extra.format == words.NAME and extra.path.rpartition("@")[2] in known])
+        own = [extra for extra in found if extra.format == words.NAME]
+        known = kinds_of(_PLAIN.get(key.kind, "")).keys() - _OF_ROOTS if own else _EMPTY
+        return tuple([extra for extra in own if extra.path.rpartition("@")[2] in known])
 
     def kept_attributes(self, key: Id, path: str = "") -> dict[str, str]:
         """The attributes that the IR cannot represent, of the element's node at this path."""
@@ -244,7 +245,8 @@ class MjcfSheet(Struct):
 
 def _unsigned(attributes: dict[str, str]) -> dict[str, str]:
     """Attributes with numbers without the sign of a zero, which only robots from MJCF keep."""
-    if "-0" not in " ".join(attributes.values()):
+    texts = " ".join(attributes.values())
+    if "-0" not in texts or _SIGNED_ZERO.search(texts) is None:
         return attributes
     return {name: text if name in _REFERENCES else _SIGNED_ZERO.sub("0", text) for name, text in attributes.items()}
 
