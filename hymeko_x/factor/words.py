@@ -37,9 +37,10 @@ def telling_words(name: str) -> list[str]:
 
 def distinguishing_words(names: Sequence[str]) -> list[list[str]]:
     """The telling words of each of these names, without the words that all of them have."""
-    split = [_WORD.findall(name) for name in names]
+    split = [tuple(_WORD.findall(name)) for name in names]
     of_all = frozenset(split[0]).intersection(*split[1:])
-    return [_telling(words, of_all) for words in split]
+    telling = {words: _telling(words, of_all) for words in frozenset(split)}
+    return [telling[words] for words in split]
 
 
 def _telling(words: Sequence[str], plain: Collection[str]) -> list[str]:
