@@ -130,7 +130,9 @@ class MjcfSheet(Struct):
         if not found or self.from_mjcf or key.kind in _NAMED_APART:
             return found
         own = [extra for extra in found if extra.format == words.NAME]
-        known = kinds_of(_PLAIN.get(key.kind, "")).keys() - _OF_ROOTS if own else _EMPTY
+        if not own:
+            return ()
+        known = kinds_of(_PLAIN.get(key.kind, "")).keys() - _OF_ROOTS
         return tuple([extra for extra in own if extra.path.rpartition("@")[2] in known])
 
     def kept_attributes(self, key: Id, path: str = "") -> dict[str, str]:
