@@ -144,9 +144,11 @@ def _leave_to_class(element: Tag, own: Mapping[str, str]) -> None:
 
 def _share_among_some(tag: str, own_class: str | None, group: list[Tag], defaults: Defaults) -> None:
     """Classes for sets of attributes that several elements share, with everything else that those have in common."""
+    split = _telling_words(group) if len(group) >= _FEWEST else []
+    if not any(split):
+        return  # no class would have a name
     start = len(defaults.classes)
     found = share([_reasons(element) for element in group], _COSTS if own_class is None else _REFINING)
-    split = _telling_words(group) if found else []
     for shared in found:
         members = [group[member] for member in shared.members]
         meant = by_meaning([split[member] for member in shared.members], _FEWEST)
