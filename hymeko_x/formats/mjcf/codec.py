@@ -125,6 +125,11 @@ def angle_text(angle: float, degree: bool) -> str:
     return degrees_text(angle) if degree else number_text(angle)
 
 
+def angles_text(angles: tuple[float, ...], degree: bool) -> str:
+    """Angles in rad in the unit of the file, separated by blanks."""
+    return " ".join(map(degrees_text, angles)) if degree else numbers_text(angles)
+
+
 def plain(attributes: Mapping[str, str], names: tuple[str, ...]) -> tuple[Any, ...]:
     """Attributes as numbers where they are numbers, else as text: what does not depend on spelling."""
     return tuple([None if (text := attributes.get(name)) is None else read_numbers(text) or text for name in names])
@@ -178,7 +183,7 @@ def write_turn(quat: tuple[float, ...], written: Written | None, settings: Setti
         return {} if quat == NO_ROTATION else _plain_turn(quat, written) if settings.plain_turns else {"quat": numbers_text(quat)}
     kind, numbers = written
     if kind in (f"euler:{settings.eulerseq}", "rpy"):
-        return {"euler": " ".join(map(degrees_text, numbers)) if settings.degree else numbers_text(numbers)}
+        return {"euler": angles_text(numbers, settings.degree)}
     if kind == "axisangle":
         return {"axisangle": f"{numbers_text(numbers[:3])} {angle_text(numbers[3], settings.degree)}"}
     if kind in ("quat", "xyaxes", "zaxis"):

@@ -9,7 +9,7 @@ from hymeko_x.formats.mjcf.codec import (
     Group,
     Settings,
     angle_text,
-    degrees_text,
+    angles_text,
     first_real,
     numbers_of,
     radians,
@@ -119,7 +119,7 @@ def span(name: str, flag: str, *, angular: bool = False) -> Group:
         if found is None:
             return {flag: "false"}
         degree = angular and settings.degree and kind is not DofKind.SLIDE
-        attributes = {name: f"{degrees_text(found[0])} {degrees_text(found[1])}" if degree else numbers_text(found)}
+        attributes = {name: angles_text(found, degree)}
         return attributes if settings.autolimits else {flag: "true", **attributes}
 
     def seen(attributes: Mapping[str, str], settings: Settings) -> Any:
