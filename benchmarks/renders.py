@@ -30,7 +30,7 @@ from hymeko_x.corpus import cache, catalog
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.draw.files import grid, png
 from hymeko_x.draw.pair import compared
-from hymeko_x.draw.render import Look, Studio, choose_backend, is_drawn, open_studio
+from hymeko_x.draw.render import PictureOptions, Studio, choose_backend, is_drawn, open_studio
 from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.roots import leave_scenery_out
 from hymeko_x.robot import Robot
@@ -107,10 +107,10 @@ class _Packages(NamedTuple):
 def drawn(path: str, pictures: Path | None = None, targets: tuple[formats.Format, ...] = formats.FORMATS) -> Drawn:
     """The robot in a file, and its conversions into every other one of these formats, by one camera."""
     row = formats.of_input(path, Path(path).read_bytes())
-    look = Look(SIZE, is_authored=True)
+    wanted = PictureOptions(SIZE, is_authored=True)
     try:
         robot = api.load(path, lenient=True)
-        studio = open_studio(robot, path if is_drawn(row) else None, look)
+        studio = open_studio(robot, path if is_drawn(row) else None, wanted)
         before = dict.fromkeys((True, False), studio.still())
         if studio.model.ntendon:
             before[False] = studio.still(tendons=False)
@@ -126,7 +126,7 @@ def drawn(path: str, pictures: Path | None = None, targets: tuple[formats.Format
             continue
         try:
             tendons = target.name not in WITHOUT_TENDONS
-            pair = compared(before[tendons], _converted(robot, target, look, studio).still(tendons=tendons))
+            pair = compared(before[tendons], _converted(robot, target, wanted, studio).still(tendons=tendons))
         except Refusal as refusal:
             found.failed[target.name] = f"{refusal.diagnostic.code.id}: {refusal.diagnostic.message}"[:200]
             continue
@@ -137,14 +137,14 @@ def drawn(path: str, pictures: Path | None = None, targets: tuple[formats.Format
     return found
 
 
-def _converted(robot: Robot, target: formats.Format, look: Look, studio: Studio) -> Studio:
+def _converted(robot: Robot, target: formats.Format, wanted: PictureOptions, studio: Studio) -> Studio:
     """A robot as its conversion into a format has it, read from that file alone."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"robot{target.suffixes[0]}"
         api.dump(robot, file, target.name, assets=None if target.holds_files else "copy", lenient=True)
         again = api.load(file, target.name, lenient=True)
         again = Robot(again.mechanism, ManyFiles((again.files, _Packages(robot.files))))
-        return open_studio(again, str(file) if is_drawn(target) else None, look, studio)
+        return open_studio(again, str(file) if is_drawn(target) else None, wanted, studio)
 
 
 def apart(path: str, pictures: Path | None, seconds: float = _SECONDS) -> Drawn:

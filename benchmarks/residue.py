@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.formats import Format
 
-REFERENCE = pipeline.Place(assets="reference")
+REFERENCE = pipeline.OutputPlace(assets="reference")
 
 
 def main() -> int:

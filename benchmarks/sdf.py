@@ -28,7 +28,7 @@ BOUND = 1.3
 EVERY = 5
 """Every so many robots are measured, unless they are named."""
 ANYWAY = Options(lenient=True)
-HERE = pipeline.Place(assets="reference")
+HERE = pipeline.OutputPlace(assets="reference")
 WAYS = ((formats.SDF, formats.URDF), (formats.URDF, formats.SDF))
 
 

@@ -100,7 +100,7 @@ def _packages(path: Path) -> dict[str, str]:
 def _converted(path: Path, out: Path) -> None:
     """Read and write, without measuring."""
     files = DiskFiles(path.parent)
-    place = pipeline.Place(str(out.parent))
+    place = pipeline.OutputPlace(str(out.parent))
     package = pipeline.write(hx.load(path).mechanism, formats.of_output(str(out)), Options(), files, Report(), place)
     disk.write_package(package, str(out), files)
 

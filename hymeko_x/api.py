@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 Place = str | os.PathLike[str]
 
 
-class Finding(TypedDict, total=False):
+class FindingOptions(TypedDict, total=False):
     """How files are found to which a robot refers."""
 
     packages: Mapping[str, Place] | None
@@ -42,7 +42,7 @@ class Finding(TypedDict, total=False):
     """The folder outside of which no file is read."""
 
 
-class Reading(Finding, total=False):
+class ReadingOptions(FindingOptions, total=False):
     """How a file is read."""
 
     arguments: Mapping[str, str] | None
@@ -55,7 +55,7 @@ class Reading(Finding, total=False):
     """Whether what is kept for the file, beside it or inside of it, is left out."""
 
 
-class Writing(TypedDict, total=False):
+class WritingOptions(TypedDict, total=False):
     """How a robot is written."""
 
     base: Literal["fixed", "free"] | None
@@ -93,9 +93,9 @@ Assets = Literal["copy", "reference", "pack"] | None
 
 
 def load(
-    path: Place, format: str | None = None, *, report: Report | None = None, lenient: bool = False, **reading: Unpack[Reading]
+    path: Place, format: str | None = None, *, report: Report | None = None, lenient: bool = False, **reading: Unpack[ReadingOptions]
 ) -> Robot:
-    """The robot in a file; :class:`Reading` lists the options. The format is taken from suffix and content unless it is given.
+    """The robot in a file; :class:`ReadingOptions` lists the options. The format is taken from suffix and content unless it is given.
 
     Diagnostics go into ``report``. ``lenient`` goes on where the input has errors, with what each error says.
 
@@ -140,12 +140,12 @@ def dump(
     packages: Mapping[str, Place] | None = None,
     search_path: Iterable[Place] = (),
     confine: Place | None = None,
-    **writing: Unpack[Writing],
+    **writing: Unpack[WritingOptions],
 ) -> Report:
     """Write a robot with its meshes to a file; return the diagnostics. The format is taken from the suffix unless given.
 
-    Relative meshes are looked for beside the file that the robot was read from, and otherwise as :class:`Finding` says;
-    :class:`Writing` lists the other options.
+    Relative meshes are looked for beside the file that the robot was read from, and otherwise as :class:`FindingOptions` says;
+    :class:`WritingOptions` lists the other options.
 
     Raises: Refusal when it cannot be written; then nothing was changed. ValueError for ``assets`` that do not fit to the path.
     """
@@ -165,7 +165,7 @@ def dumps(
     packages: Mapping[str, Place] | None = None,
     search_path: Iterable[Place] = (),
     confine: Place | None = None,
-    **writing: Unpack[Writing],
+    **writing: Unpack[WritingOptions],
 ) -> str:
     """A robot as text; meshes are referred to from the working folder, and nothing is written. Options as for :func:`dump`.
 
@@ -178,7 +178,9 @@ def dumps(
     report = Report() if report is None else report
     files = _files_of(robot, packages, search_path, confine)
     mechanism = mechanism_of(robot)
-    result = pipeline.convert(mechanism, formats.by_name(format), Options(**writing), files, report, pipeline.Place(assets="reference"))
+    result = pipeline.convert(
+        mechanism, formats.by_name(format), Options(**writing), files, report, pipeline.OutputPlace(assets="reference")
+    )
     report_unwritten(result.package, "a text", report)
     return result.package.main.decode()
 
@@ -204,11 +206,11 @@ def convert(
     inertia_from: Literal["collision", "visual", "hull"] | None = None,
     collision: Literal["hull", "decompose"] | None = None,
     lenient: bool = False,
-    **reading: Unpack[Reading],
+    **reading: Unpack[ReadingOptions],
 ) -> pipeline.Result:
     """Convert a file with its meshes; return the mechanism, the package, the diagnostics and the losses.
 
-    :class:`Reading` and :class:`Writing` list the options.
+    :class:`ReadingOptions` and :class:`WritingOptions` list the options.
 
     Raises: Refusal when input or output has errors; then nothing was changed. ValueError for ``assets`` that do not fit to the path.
     """
@@ -239,7 +241,7 @@ def update(
     density: float | None = None,
     inertia_from: Literal["collision", "visual", "hull"] | None = None,
     collision: Literal["hull", "decompose"] | None = None,
-    **reading: Unpack[Reading],
+    **reading: Unpack[ReadingOptions],
 ) -> Updated:
     """Bring the edits in ``edited``, which was once converted from ``original``, into the text of that, or into ``output``.
 
@@ -281,7 +283,7 @@ def _source(
     return replace(given, **chosen, ignores_kept=ignore_kept)
 
 
-def _place(path: Place, assets: Assets, format: formats.Format) -> pipeline.Place:
+def _place(path: Place, assets: Assets, format: formats.Format) -> pipeline.OutputPlace:
     """Where the output and its files go. Raises: ValueError where they cannot go there."""
     reason = reason_against(os.fspath(path), assets, format)
     if reason:

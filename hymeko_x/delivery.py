@@ -23,7 +23,7 @@ from hymeko_x.source import Kept, suffix_of
 if TYPE_CHECKING:
     from hymeko_x.formats import Assets, Format
     from hymeko_x.ir.mechanism import Mechanism
-    from hymeko_x.pipeline import Place
+    from hymeko_x.pipeline import OutputPlace
     from hymeko_x.source import Files, Package, Source
 
 
@@ -38,7 +38,7 @@ class Delivery(Struct, frozen=True):
     format: Format
     options: Options
     files: Files
-    place: Place
+    place: OutputPlace
     path: str
     own: Source | None = None
     passed: Kept | None = None
@@ -104,13 +104,13 @@ class Delivery(Struct, frozen=True):
         return disk.in_the_way(package, self.path, folder, self.files)
 
 
-def place_of(path: str, assets: Assets | None) -> pipeline.Place:
+def place_of(path: str, assets: Assets | None) -> pipeline.OutputPlace:
     """The place of an output on the disk. An archive is a place of its own, in which nothing is but what is put there."""
     folder = os.path.dirname(path) or "."
     if archives.is_archive(path):
-        return pipeline.Place(path, "pack")
+        return pipeline.OutputPlace(path, "pack")
     name = os.path.basename(os.path.abspath(folder))
-    return pipeline.Place(folder, assets, name, package=disk.package_uri(folder), around=DiskFiles(Path(folder)))
+    return pipeline.OutputPlace(folder, assets, name, package=disk.package_uri(folder), around=DiskFiles(Path(folder)))
 
 
 def archive_suffix(format: Format) -> str:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
 
-class Field(Struct, frozen=True):
+class OutlineField(Struct, frozen=True):
     """A named value of a block: its text as it stands, between ``value_start`` and ``value_end``.
 
     ``start`` and ``end`` are the whole of it, with the white space before it and its name: what goes when it is removed.
@@ -27,7 +27,7 @@ class Field(Struct, frozen=True):
     value_end: int
 
 
-class Block(Struct, eq=False):
+class OutlineBlock(Struct, eq=False):
     """An element of a text with its own fields and the blocks in it.
 
     ``file`` is the name of the file that it stands in, ``start`` and ``end`` its bytes there, ``inside`` where the blocks in it begin and
@@ -42,21 +42,21 @@ class Block(Struct, eq=False):
     first: int
     head: int
     inside: tuple[int, int] | None
-    fields: dict[str, Field] = field(default_factory=dict)
-    children: list[Block] = field(default_factory=list)
-    parent: Block | None = None
+    fields: dict[str, OutlineField] = field(default_factory=dict)
+    children: list[OutlineBlock] = field(default_factory=list)
+    parent: OutlineBlock | None = None
 
     @property
     def is_name_alone(self) -> bool:
         """Whether the block is a name that stands for all of it."""
         return self.inside == (self.end, self.end)
 
-    def add(self, child: Block) -> None:
+    def add(self, child: OutlineBlock) -> None:
         """Put a block into this one."""
         child.parent = self
         self.children.append(child)
 
-    def walk(self) -> Iterator[Block]:
+    def walk(self) -> Iterator[OutlineBlock]:
         """The block and every block in it, in the order of the text."""
         stack = [self]
         while stack:
@@ -81,7 +81,7 @@ class TextFile(Struct, frozen=True):
         return self.opening + edited[self.read :]
 
 
-class Style(Struct, frozen=True):
+class BlockStyle(Struct, frozen=True):
     """How a format writes around its blocks.
 
     ``opening`` and ``closing`` (with ``{tag}``) go around the content of a block that had none; ``trailing`` is the pattern of what may
@@ -102,7 +102,7 @@ class Style(Struct, frozen=True):
 class Outline(Struct, frozen=True):
     """The blocks of a text with the files that it includes, by the names that the blocks have for them; ``main`` names the first one."""
 
-    root: Block
+    root: OutlineBlock
     files: Mapping[str, TextFile]
     main: str
-    style: Style
+    style: BlockStyle

@@ -48,7 +48,7 @@ class Writer(Protocol):
         ...
 
 
-class Place(Struct, frozen=True):
+class OutputPlace(Struct, frozen=True):
     """Where the output goes: its ``folder``, and whether files go beside it or with it into an archive, or are referred to (None = the
     format's own way).
 
@@ -67,7 +67,7 @@ class Place(Struct, frozen=True):
     in_the_way: Callable[[Package, str], str | None] | None = None
 
 
-HERE = Place()
+HERE = OutputPlace()
 """The working folder."""
 
 
@@ -161,7 +161,7 @@ def stop_on_errors(report: Report, since: int, *, lenient: bool) -> None:
 
 
 @uncollected()
-def write(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Package:
+def write(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: OutputPlace = HERE) -> Package:
     """The mechanism in a format, without a residue: rewritten until the format can represent it, its files placed, then printed.
 
     Raises: Refusal when the format cannot be written; Stopped when that made errors, unless the options are lenient.
@@ -177,7 +177,7 @@ def convert(
     options: Options,
     files: Files,
     report: Report,
-    place: Place = HERE,
+    place: OutputPlace = HERE,
     *,
     measured: bool = True,
     passed: Kept | None = None,
@@ -240,13 +240,13 @@ def with_kept(package: Package, kept: Kept, options: Options, report: Report) ->
     package = replace(package, originals=kept.originals, digests=kept.digests)
     if not kept.text:
         return package
-    if options.keep == "beside" or package.carry is None:
+    if options.keep == "beside" or package.with_residue is None:
         return replace(package, kept=kept.text)
-    return replace(package, main=package.carry(kept.text))
+    return replace(package, main=package.with_residue(kept.text))
 
 
 def _printed(
-    mechanism: Mechanism, given: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place
+    mechanism: Mechanism, given: Mechanism, format: Format, options: Options, files: Files, report: Report, place: OutputPlace
 ) -> _Printed:
     """Rewritten, with numbers that ``given`` has not as short as a person would write them, with its files placed, and printed."""
     since = len(report)
@@ -263,7 +263,7 @@ def _printed(
     return _placed_and_printed(legal, format, replace(options, within=folder), files, Report(), place)
 
 
-def _placed_and_printed(legal: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
+def _placed_and_printed(legal: Mechanism, format: Format, options: Options, files: Files, report: Report, place: OutputPlace) -> _Printed:
     """A legal mechanism with its files placed, and printed."""
     options = replace(options, mesh_prefix=_prefix(options, format, place))
     prefix = options.mesh_prefix or ""
@@ -281,7 +281,7 @@ def _placed_and_printed(legal: Mechanism, format: Format, options: Options, file
     return _Printed(package, placed, bool(options.within))
 
 
-def _prefix(options: Options, format: Format, place: Place) -> str | None:
+def _prefix(options: Options, format: Format, place: OutputPlace) -> str | None:
     """What stands before the paths of files beside the output; None where they are relative, or no files are put there."""
     if options.package_layout:
         return f"model://{place.name}" if place.name and place.assets != "reference" else None

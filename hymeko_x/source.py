@@ -136,13 +136,13 @@ class Reading(NamedTuple):
     """What a frontend reads: the mechanism, and the text of the residue that is kept inside the file (empty = none)."""
 
     mechanism: Mechanism
-    carried: str = ""
+    residue: str = ""
 
 
 class Package(Struct, frozen=True):
     """One output: the main file's bytes and the files beside it, by relative path with forward slashes.
 
-    ``copies`` names files that are to be copied as they are: relative path -> path in the source's ``files``. ``carry`` prints the
+    ``copies`` names files that are to be copied as they are: relative path -> path in the source's ``files``. ``with_residue`` prints the
     main file again with the text of a residue where other readers of the format ignore it; None for a format that represents
     everything. ``enclose`` gives the package with files inside of the main one; None where they stand beside it. ``kept`` is the text of
     the kept file beside the main one; where it is empty there is none. ``originals`` are copies in the folder of what is kept, and
@@ -153,7 +153,7 @@ class Package(Struct, frozen=True):
     main: bytes
     files: Mapping[str, bytes] = field(default_factory=dict)
     copies: Mapping[str, str] = field(default_factory=dict)
-    carry: Callable[[str], bytes] | None = None
+    with_residue: Callable[[str], bytes] | None = None
     enclose: Callable[[Mapping[str, bytes]], Package] | None = None
     kept: str = ""
     originals: Mapping[str, str] = field(default_factory=dict)
@@ -185,7 +185,7 @@ class PackageFiles(Struct, frozen=True):
 
 
 class PlacedFiles(Struct, frozen=True):
-    """The files of a mechanism that another file carried: what is not where it was lies where that file has it."""
+    """The files of a mechanism that another file contained: what is not where it was lies where that file has it."""
 
     places: Mapping[str, str]
     behind: Files

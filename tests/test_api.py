@@ -35,13 +35,13 @@ def test_every_option_of_convert_is_an_argument() -> None:
     parser = argparse.ArgumentParser()
     convert_arguments(parser)
     options = {NAMED.get(action.dest, action.dest) for action in parser._actions} - OF_THE_SHELL
-    assert options - arguments_of(api.convert, api.Reading) == set()
+    assert options - arguments_of(api.convert, api.ReadingOptions) == set()
 
 
 @pytest.mark.parametrize("function", [api.dump, api.dumps])
 def test_every_option_of_the_output_is_an_argument_of_dump_and_dumps(function: object) -> None:
-    assert set(api.Writing.__annotations__) <= set(inspect.signature(api.convert).parameters)
-    assert {*api.Finding.__annotations__, *api.Writing.__annotations__} <= arguments_of(function, api.Writing)
+    assert set(api.WritingOptions.__annotations__) <= set(inspect.signature(api.convert).parameters)
+    assert {*api.FindingOptions.__annotations__, *api.WritingOptions.__annotations__} <= arguments_of(function, api.WritingOptions)
 
 
 def test_packages_are_found_on_the_search_path_and_inside_of_a_folder_only(tmp_path: Path) -> None:

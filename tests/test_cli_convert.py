@@ -140,7 +140,7 @@ def test_a_loss_is_measured_by_reading_the_result_back(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     main_file = ARM.replace('effort="10"', 'effort="9"').encode()
-    lossy = Package(main_file, carry=lambda residue: main_file)
+    lossy = Package(main_file, with_residue=lambda residue: main_file)
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: lossy)
     assert main(["convert", "arm.urdf", "lossy.xacro", "--json", "--keep=inside"]) == exits.DONE
     said = capsys.readouterr()

@@ -1,4 +1,4 @@
-"""The large scale of the code: short files, short functions, and no circle of imports among files."""
+"""The large scale of the code: short files, short functions, one name for one class, and no circle of imports among files."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ MODULES = {
 }
 LONGEST_FILE = 400
 LONGEST_FUNCTION = 40
+OF_OTHERS = ("hymeko_x.verify.model", "hymeko_x.formats.json.document")
+"""Classes under the names of the parts that they mirror: the robot as an engine has it, and what the JSON schema calls by these names."""
 
 
 @cache
@@ -36,6 +38,17 @@ def test_no_function_is_long() -> None:
                 if length > LONGEST_FUNCTION:
                     long[f"{name}.{node.name}"] = length
     assert long == {}
+
+
+def test_a_class_has_its_name_alone() -> None:
+    """A name stands for one concept, wherever it is read. Private classes are known in their file alone."""
+    homes: dict[str, list[str]] = {}
+    for name, path in MODULES.items():
+        if name not in OF_OTHERS:
+            for node in tree(path).body:
+                if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                    homes.setdefault(node.name, []).append(name)
+    assert {name: found for name, found in homes.items() if len(found) > 1} == {}
 
 
 def test_no_files_import_each_other_in_a_circle() -> None:

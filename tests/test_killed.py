@@ -95,7 +95,7 @@ def written(way: Way, source: Path) -> Written:
     robot, files = hx.load(source / way.source).mechanism, DiskFiles(source)
     format = formats.of_output(way.target)
     options = Options(layout=way.layout, split=way.split, beside="o")
-    place = pipeline.Place(assets="copy")
+    place = pipeline.OutputPlace(assets="copy")
     delivery = Delivery(robot, format, options, files, place, path="")
     package = delivery.convert(Report()).package
     draws = len(package.files) + len(package.copies) + 1  # the names of what is staged

@@ -37,7 +37,7 @@ ROUGHLY = {"usd": Tolerance(1e-6, 1e-6, by_vector=True)}
 def through(mechanism: Mechanism, format: str) -> Mechanism:
     """What comes back from a format."""
     found = formats.by_name(format)
-    package = pipeline.write(mechanism, found, Options(), NoFiles(), Report(), pipeline.Place(assets="reference"))
+    package = pipeline.write(mechanism, found, Options(), NoFiles(), Report(), pipeline.OutputPlace(assets="reference"))
     return pipeline.read(Source(f"r.{format}", package.main), found, Report())
 
 
@@ -123,7 +123,7 @@ def test_a_second_way_through_a_format_changes_nothing_more(format: str, data: s
 def test_what_is_taken_out_of_the_result_is_in_the_ledger(format: str, mechanism: Mechanism, data: st.DataObject) -> None:
     """A backend that loses a body, planted here, cannot hide."""
     found = formats.by_name(format)
-    place = pipeline.Place(assets="reference")
+    place = pipeline.OutputPlace(assets="reference")
     victim = data.draw(st.sampled_from([key for key, _ in mechanism.vertices(parts.Body)]))
     package = pipeline.write(_without(mechanism, victim), found, Options(), NoFiles(), Report(), place)
     image = pipeline.read_back(package, found, NoFiles())

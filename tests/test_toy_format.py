@@ -36,7 +36,7 @@ def read(source: Source, report: Report) -> Reading:
 def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """Bodies and joints only."""
     lines = [mechanism.name, *(f"{view.parent.name} {view.child.name}" for view in mechanism.joints.values())]
-    return Package(_text(lines), carry=lambda residue: _text([*lines, *(f"#{line}" for line in residue.splitlines())]))
+    return Package(_text(lines), with_residue=lambda residue: _text([*lines, *(f"#{line}" for line in residue.splitlines())]))
 
 
 def _text(lines: list[str]) -> bytes:

@@ -34,7 +34,7 @@ class Allowed(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
         return (not self.files or path in self.files) and fnmatchcase(quantity, self.what) and fnmatchcase(at, f"*{self.at}*")
 
 
-class Robot(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class RobotFiles(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """One robot: its files, of which the others are compared with the first one."""
 
     name: str
@@ -59,7 +59,7 @@ class Robot(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
 class Config(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """The whole file: robots, and what holds for all of them."""
 
-    robot: tuple[Robot, ...]
+    robot: tuple[RobotFiles, ...]
     tolerances: dict[str, float] = field(default_factory=dict)
     packages: dict[str, str] = field(default_factory=dict)
     ignore: tuple[str, ...] = ()
@@ -83,7 +83,7 @@ def load(path: str) -> Config:
     return msgspec.structs.replace(config, robot=robots)
 
 
-def _with_common(robot: Robot, config: Config) -> Robot:
+def _with_common(robot: RobotFiles, config: Config) -> RobotFiles:
     merged: dict[str, Any] = {
         "tolerances": {**config.tolerances, **robot.tolerances},
         "packages": {**config.packages, **robot.packages},
@@ -93,7 +93,7 @@ def _with_common(robot: Robot, config: Config) -> Robot:
     return msgspec.structs.replace(robot, **merged)
 
 
-def _check(robot: Robot, path: str) -> None:
+def _check(robot: RobotFiles, path: str) -> None:
     """Raises: Refusal HX304 where a robot has nothing to compare, a quantity does not exist, or an allowance names no file of the robot."""
     from hymeko_x.verify.checks import QUANTITIES
 
@@ -115,7 +115,7 @@ def _check(robot: Robot, path: str) -> None:
             raise refuse(codes.CONFIG, f"robot '{robot.name}' allows a difference in '{stray}', which is none of its files", Origin(path))
 
 
-def _check_pattern(robot: Robot, pattern: str, path: str) -> None:
+def _check_pattern(robot: RobotFiles, pattern: str, path: str) -> None:
     from hymeko_x.verify.checks import QUANTITIES
 
     if not any(fnmatchcase(quantity, pattern) for quantity in QUANTITIES):

@@ -21,7 +21,7 @@ from hymeko_x.verify.renaming import renamed
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.agree.config import Config, Robot
+    from hymeko_x.agree.config import Config, RobotFiles
     from hymeko_x.ir.mechanism import Mechanism
 
 _NAMED = re.compile(r"(\w+) '([^']*)'")
@@ -38,7 +38,7 @@ def path_of(folder: Path, file: str) -> Path:
     return path if path.exists() else folder / located(file).path
 
 
-def read(robot: Robot, folder: Path, path: str, search_path: tuple[Path, ...] = ()) -> tuple[Mechanism | None, set[Path]]:
+def read(robot: RobotFiles, folder: Path, path: str, search_path: tuple[Path, ...] = ()) -> tuple[Mechanism | None, set[Path]]:
     """A file of a robot by this program's own reader, None where it cannot be read; and all files that it needs, with links resolved."""
     place = path_of(folder, path)
     needed = {place.resolve()}
@@ -57,10 +57,10 @@ def read(robot: Robot, folder: Path, path: str, search_path: tuple[Path, ...] = 
     return mechanism, needed | {Path(place).resolve() for place in {*assets, *read_in, *included} if place}
 
 
-class Lines:
+class ElementLines:
     """Where elements stand in the files of a robot, which are read when the first is asked for."""
 
-    def __init__(self, robot: Robot, folder: Path, search_path: tuple[Path, ...]) -> None:
+    def __init__(self, robot: RobotFiles, folder: Path, search_path: tuple[Path, ...]) -> None:
         self._read = cache(lambda path: read(robot, folder, path, search_path)[0])
         self._written = cache(lambda path: self._names(path, robot.rename))
 
@@ -107,7 +107,7 @@ def _shown(place: str, main: str, file: str) -> str:
 # ---- what has changed ------------------------------------------------------------------------------------------------------
 
 
-def changed_robots(config: Config, path: str, revision: str, search_path: tuple[Path, ...] = ()) -> tuple[Robot, ...]:
+def changed_robots(config: Config, path: str, revision: str, search_path: tuple[Path, ...] = ()) -> tuple[RobotFiles, ...]:
     """The robots of which a file, or one that it includes or shows, has changed since a revision of git; all where ``path`` itself has.
 
     Raises: Refusal HX304 when git is not there or does not know the revision.

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 from msgspec.structs import replace
 
-from hymeko_x.agree.files import Lines, path_of
+from hymeko_x.agree.files import ElementLines, path_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from datetime import date
     from pathlib import Path
 
-    from hymeko_x.agree.config import Allowed, Robot
+    from hymeko_x.agree.config import Allowed, RobotFiles
     from hymeko_x.diagnostics import Origin
     from hymeko_x.verify.verdict import Check, Verdict
 
@@ -58,7 +58,7 @@ class Disagreement(Struct, frozen=True):
 class Compared(Struct, frozen=True):
     """What became of one robot."""
 
-    robot: Robot
+    robot: RobotFiles
     found: tuple[Disagreement, ...] = ()
     notes: tuple[str, ...] = ()
     """What a reader of the result should know: allowances that ended or that nothing needs, and what a format cannot represent."""
@@ -78,14 +78,14 @@ class Compared(Struct, frozen=True):
         return replace(self, found=tuple(largest))
 
 
-def compare(robot: Robot, folder: Path, today: date, search_path: tuple[Path, ...] = ()) -> Compared:
+def compare(robot: RobotFiles, folder: Path, today: date, search_path: tuple[Path, ...] = ()) -> Compared:
     """Compare the files of a robot, whose paths are relative to ``folder``.
 
     Raises: Refusal when a file is not there or an engine is not installed.
     """
     found: list[Disagreement] = []
     notes: list[str] = []
-    lines = Lines(robot, folder, search_path)
+    lines = ElementLines(robot, folder, search_path)
     for path in robot.files[1:]:
         verdict = _verdict(robot, folder, path, search_path)
         found += _disagreements(robot, path, verdict, lines, today)
@@ -99,7 +99,7 @@ def compare(robot: Robot, folder: Path, today: date, search_path: tuple[Path, ..
     return Compared(robot, tuple(found), tuple(dict.fromkeys(notes)))
 
 
-def _verdict(robot: Robot, folder: Path, path: str, search_path: tuple[Path, ...]) -> Verdict:
+def _verdict(robot: RobotFiles, folder: Path, path: str, search_path: tuple[Path, ...]) -> Verdict:
     from hymeko_x.verify import verify
 
     return verify(
@@ -117,7 +117,7 @@ def _verdict(robot: Robot, folder: Path, path: str, search_path: tuple[Path, ...
     )
 
 
-def _disagreements(robot: Robot, path: str, verdict: Verdict, lines: Lines, today: date) -> Iterator[Disagreement]:
+def _disagreements(robot: RobotFiles, path: str, verdict: Verdict, lines: ElementLines, today: date) -> Iterator[Disagreement]:
     files = robot.files[0], path
     if verdict.reason:
         places = tuple(lines.mentioned(file, verdict.reason) for file in files)

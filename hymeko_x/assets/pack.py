@@ -46,7 +46,7 @@ def pack(
     shelf: Shelf,
     report: Report,
     *,
-    layout: Layout | None = None,
+    layout: FolderLayout | None = None,
 ) -> tuple[Mechanism, dict[str, bytes], dict[str, str]]:
     """The mechanism with its files' new paths, the new files by relative path, and the copies by relative path.
 
@@ -93,15 +93,15 @@ class Keep(Enum):
         return Keep.PACKAGES_AND_PATHS if format.keeps_package_uris else Keep.NOTHING
 
 
-class Layout(NamedTuple):
+class FolderLayout(NamedTuple):
     """The folders of an output that programs find by the name of a package: which references stay, and where textures go."""
 
     keep: Keep
     textures: str = "textures"
 
 
-ROS_PACKAGE = Layout(Keep.PACKAGES)
-GAZEBO_MODEL = Layout(Keep.NOTHING, "materials/textures")
+ROS_PACKAGE = FolderLayout(Keep.PACKAGES)
+GAZEBO_MODEL = FolderLayout(Keep.NOTHING, "materials/textures")
 
 
 def keep_references(
@@ -110,7 +110,7 @@ def keep_references(
     files: Files,
     report: Report,
     keep: Keep,
-    layout: Layout | None = None,
+    layout: FolderLayout | None = None,
     *,
     models: bool = True,
 ) -> Mechanism:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import disk, formats
-from hymeko_x.cli.convert import Output, deliver, output_arguments
+from hymeko_x.cli.convert import Destination, deliver, output_arguments
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import Input, input_arguments, lenient_argument, read_input
 from hymeko_x.diagnostics import Report
@@ -50,7 +50,7 @@ def run_attach(chosen: argparse.Namespace) -> int:
     except (EditError, UnknownName) as error:
         raise UsageError(str(error)) from error
     source = replace(host.source, files=whole.files)
-    return deliver(Input(whole.mechanism, host.format, source), Output(format, chosen.output), chosen, report)
+    return deliver(Input(whole.mechanism, host.format, source), Destination(format, chosen.output), chosen, report)
 
 
 def _robot(given: Input) -> Robot:

@@ -81,7 +81,7 @@ def _differences_json(a: Input, b: Input, found: tuple[Difference, ...]) -> dict
 _TOLERANCE = Tolerance(1e-12, 1e-12)
 
 
-class Leg(NamedTuple):
+class ConversionRow(NamedTuple):
     """One conversion: into which format, how large the file is, what got lost on the way, and what the engines say."""
 
     format: str
@@ -131,7 +131,7 @@ def _stops(words: str, own: Format) -> list[Format]:
     return stops
 
 
-def _legs(chosen: argparse.Namespace, original: Mechanism, stops: list[Format], folder: Path) -> Iterator[Leg]:
+def _legs(chosen: argparse.Namespace, original: Mechanism, stops: list[Format], folder: Path) -> Iterator[ConversionRow]:
     """Converts from leg to leg; compares each result with the original, by our own eyes and by the engines'."""
     packages = dict(chosen.package)
     before = chosen.input
@@ -151,11 +151,11 @@ def _legs(chosen: argparse.Namespace, original: Mechanism, stops: list[Format], 
         back = api.load(after, format.name, packages=packages, lenient=chosen.lenient).mechanism
         losses = None if result.losses is None else len(result.losses)
         differences = len(diff(original, back, _TOLERANCE))
-        yield Leg(format.name, after.stat().st_size, losses, differences, verdict_of(chosen.input, str(after), chosen))
+        yield ConversionRow(format.name, after.stat().st_size, losses, differences, verdict_of(chosen.input, str(after), chosen))
         before = str(after)
 
 
-def leg_lines(path: str, format: str, size: int, legs: list[Leg]) -> Iterator[str]:
+def leg_lines(path: str, format: str, size: int, legs: list[ConversionRow]) -> Iterator[str]:
     """A table: the file, then one row per leg, with the checks that failed below it."""
     yield f"  {'leg':<4} {'format':<8} {'bytes':>9} {'losses':>7} {'differs':>8}  verdict"
     yield f"  {0:<4} {format:<8} {size:>9} {'':>7} {'':>8}  {path}"
@@ -168,7 +168,7 @@ def leg_lines(path: str, format: str, size: int, legs: list[Leg]) -> Iterator[st
             yield f"       {check.quantity}: {check.worst:.3g} {check.unit} at {check.at}"
 
 
-def _legs_json(path: str, format: str, size: int, legs: list[Leg]) -> dict[str, object]:
+def _legs_json(path: str, format: str, size: int, legs: list[ConversionRow]) -> dict[str, object]:
     """The document of `--json`: the file, and every leg with its verdict."""
     rows = [
         {"format": leg.format, "bytes": leg.bytes, "losses": leg.losses, "differences": leg.differences, **leg.verdict.as_json()}

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 FAIL_ON = ("error", "loss", "warning")
 
 
-class Output(NamedTuple):
+class Destination(NamedTuple):
     """Where the result goes: its format, and a path (`-` is standard output)."""
 
     format: Format
@@ -58,7 +58,7 @@ def run_import(chosen: argparse.Namespace) -> int:
     disk.check_outputs(chosen.output, chosen.report)
     report = Report()
     given = read_input(chosen.input, chosen, report, formats.OWN)
-    return deliver(given, Output(formats.OWN, chosen.output), chosen, report, measured=bool(chosen.report or chosen.fail_on))
+    return deliver(given, Destination(formats.OWN, chosen.output), chosen, report, measured=bool(chosen.report or chosen.fail_on))
 
 
 def export_arguments(parser: argparse.ArgumentParser) -> None:
@@ -78,7 +78,7 @@ def run_export(chosen: argparse.Namespace) -> int:
     format = _output_format(chosen, chosen.output)
     _check_outputs(chosen, chosen.output)
     report = Report()
-    return deliver(read_input(chosen.input, chosen, report, format), Output(format, chosen.output), chosen, report)
+    return deliver(read_input(chosen.input, chosen, report, format), Destination(format, chosen.output), chosen, report)
 
 
 def convert_arguments(parser: argparse.ArgumentParser) -> None:
@@ -149,7 +149,7 @@ def _convert(chosen: argparse.Namespace, source: str, output: str) -> int:
     report = Report()
     given = read_input(source, chosen, report, format)
     own = unchanged(given.source, given.format, format)
-    code = deliver(given, Output(format, output), chosen, report, own=own)
+    code = deliver(given, Destination(format, output), chosen, report, own=own)
     return _verified(source, output, chosen) if chosen.verify and code == exits.DONE else code
 
 
@@ -204,7 +204,7 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def deliver(
-    given: Input, output: Output, chosen: argparse.Namespace, report: Report, *, measured: bool = True, own: Source | None = None
+    given: Input, output: Destination, chosen: argparse.Namespace, report: Report, *, measured: bool = True, own: Source | None = None
 ) -> int:
     """Write the mechanism that was read, show diagnostics and losses, and return the exit code.
 
@@ -256,21 +256,21 @@ def _check_applicable(format: Format, chosen: argparse.Namespace) -> None:
             raise UsageError(f"--{option.replace('_', '-')} is for {takers}, and the output is {format.name}")
 
 
-def _place(output: Output, assets: Assets | None) -> pipeline.Place:
+def _place(output: Destination, assets: Assets | None) -> pipeline.OutputPlace:
     """Beside standard output nothing can be put, so that files are referred to from the working folder."""
     if output.path == "-":
-        return pipeline.Place(assets="reference")
+        return pipeline.OutputPlace(assets="reference")
     return place_of(output.path, assets)
 
 
-def _write(delivery: Delivery, output: Output, result: Result) -> None:
+def _write(delivery: Delivery, output: Destination, result: Result) -> None:
     if output.path == "-":
         sys.stdout.buffer.write(result.package.main)
     else:
         delivery.put(result)
 
 
-def _document(given: Input, output: Output, report: Report, losses: tuple[Loss, ...] | None) -> Json:
+def _document(given: Input, output: Destination, report: Report, losses: tuple[Loss, ...] | None) -> Json:
     """The document of `--report` and of `convert --json`."""
     return document((given.source.name, given.format.name), (output.path, output.format.name), report, losses)
 

@@ -17,7 +17,7 @@ from hymeko_x.cli.parser import count
 from hymeko_x.cli.terminal import show
 from hymeko_x.corpus import cache, catalog
 from hymeko_x.corpus.names import matching
-from hymeko_x.corpus.plan import Limits, Plan, pairs_of
+from hymeko_x.corpus.plan import Plan, ProcessLimits, pairs_of
 from hymeko_x.corpus.rows import CRASHED, FAILED, OUT_OF_MEMORY, TIMED_OUT
 from hymeko_x.diagnostics import Refusal, refuse
 from hymeko_x.extras import install_command
@@ -110,7 +110,7 @@ def _fetch(packages: tuple[WheelPackage, ...], root: Path) -> int:
 
 
 @contextmanager
-def _download_progress(packages: tuple[WheelPackage, ...]) -> Iterator[cache.Watch]:
+def _download_progress(packages: tuple[WheelPackage, ...]) -> Iterator[cache.DownloadProgress]:
     """A bar on standard error if that is a terminal, else silence."""
     if not sys.stderr.isatty():
         yield _silent
@@ -166,7 +166,7 @@ def _run(chosen: argparse.Namespace) -> int:
     cases = _cases(chosen)
     if not cases:
         raise UsageError("there is no robot to read")
-    plan = Plan(chosen.pairs, chosen.verify, chosen.samples, chosen.meshes, Limits(chosen.timeout, int(chosen.memory * 2**20)))
+    plan = Plan(chosen.pairs, chosen.verify, chosen.samples, chosen.meshes, ProcessLimits(chosen.timeout, int(chosen.memory * 2**20)))
     store = Store(chosen.output)
     with _run_progress(len(cases), len(store.known()) if chosen.resume else 0) as watch:
         tables = run(cases, plan, _engine(chosen), store, resume=chosen.resume, watch=watch)

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from hymeko_x.verify.dh import Row, Table
-    from hymeko_x.verify.dh.lines import Link
+    from hymeko_x.verify.dh import DhRow, Table
+    from hymeko_x.verify.dh.lines import DhLink
 
     Checked = tuple[Table, float | None]
 
@@ -24,7 +24,7 @@ _PARTS_OF_PI = sorted({Fraction(n, k) for k in (1, 2, 3, 4, 6) for n in range(1,
 _LATEX_SPECIAL = re.compile(r"([_&%#$])")
 
 
-class Line(NamedTuple):
+class PrintedLine(NamedTuple):
     """A row as it is printed: its name, and theta, d, a, alpha and beta in the words of a style."""
 
     name: str
@@ -121,18 +121,18 @@ def _title(table: Table) -> str:
     return f"{table.start} -> {table.tip} ({table.convention.value})"
 
 
-def _all_rows(table: Table) -> Iterator[tuple[str, str, Row | Link]]:
+def _all_rows(table: Table) -> Iterator[tuple[str, str, DhRow | DhLink]]:
     """Base, joints and tool: name, kind and numbers."""
     yield from (("base", "fixed", row) for row in table.base_rows if not _is_dust(row))
     yield from ((row.joint, row.kind.value, row) for row in table.rows)
     yield from (("tool", "fixed", row) for row in table.tool_rows if not _is_dust(row))
 
 
-def _numbers(row: Row | Link) -> tuple[float, float, float, float, float]:
+def _numbers(row: DhRow | DhLink) -> tuple[float, float, float, float, float]:
     return row.theta + 0.0, row.d + 0.0, row.a + 0.0, row.alpha + 0.0, row.beta + 0.0  # no negative zeros
 
 
-def _is_dust(row: Row | Link) -> bool:
+def _is_dust(row: DhRow | DhLink) -> bool:
     return all(abs(value) < _DUST for value in _numbers(row))
 
 
@@ -141,14 +141,14 @@ def _width(table: Table) -> int:
     return 5 if any(abs(row.beta) > _DUST for _, _, row in _all_rows(table)) else 4
 
 
-def _lines(table: Table, style: Callable[[float, bool], str]) -> Iterator[Line]:
+def _lines(table: Table, style: Callable[[float, bool], str]) -> Iterator[PrintedLine]:
     """The rows with their values as text; a coordinate is q plus its offset."""
     for name, kind, row in _all_rows(table):
         values = [style(row.theta, True), style(row.d, False), style(row.a, False), style(row.alpha, True), style(row.beta, True)]
         if kind != "fixed":
             moving = 1 if kind == "slide" else 0
             values[moving] = _moving(values[moving])
-        yield Line(name, tuple(values[: _width(table)]))
+        yield PrintedLine(name, tuple(values[: _width(table)]))
 
 
 def _moving(offset: str) -> str:

@@ -21,8 +21,8 @@ from hymeko_x.generate.prompts import PROMPTS
 if TYPE_CHECKING:
     import argparse
 
-    from hymeko_x.generate.loop import Step, Task
-    from hymeko_x.generate.models import Model
+    from hymeko_x.generate.loop import JudgedAnswer, Task
+    from hymeko_x.generate.models import LanguageModel
 
 _ONE_JOINT = 2
 """Up to so many bodies the paper's rate is that of the robot with one joint."""
@@ -51,7 +51,7 @@ def run_generate(chosen: argparse.Namespace) -> int:
     task = _task(chosen)
     model = _model(chosen, task)
     lines: list[str] = []
-    runs: list[list[Step]] = []
+    runs: list[list[JudgedAnswer]] = []
     for number in range(1, chosen.runs + 1):
         steps = generate(task, model, chosen.tries)
         lines += (json.dumps({"run": number, **asdict(step)}) for step in steps)
@@ -67,7 +67,7 @@ def run_generate(chosen: argparse.Namespace) -> int:
     return exits.DONE if all(steps[-1].is_same for steps in runs) else exits.DIFFERENT
 
 
-def table(runs: list[list[Step]]) -> list[str]:
+def table(runs: list[list[JudgedAnswer]]) -> list[str]:
     """How many first answers pass each test as they are, and how many runs end with the same robot."""
     first = [steps[0] for steps in runs if not steps[0].repairs]
     rows = (
@@ -92,7 +92,7 @@ def _task(chosen: argparse.Namespace) -> Task:
     return Task(text, Path(chosen.input), robot, formats.by_name(chosen.to), chosen.prompt)
 
 
-def _model(chosen: argparse.Namespace, task: Task) -> Model:
+def _model(chosen: argparse.Namespace, task: Task) -> LanguageModel:
     from hymeko_x.generate.models import Endpoint, Faulty, Replay
 
     kind, _, word = chosen.model.partition(":")

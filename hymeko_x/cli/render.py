@@ -60,15 +60,15 @@ def run_render(chosen: argparse.Namespace) -> int:
 
 
 def _studio(path: str, chosen: argparse.Namespace) -> Studio:
-    from hymeko_x.draw.render import Look, is_drawn, open_studio
+    from hymeko_x.draw.render import PictureOptions, is_drawn, open_studio
     from hymeko_x.robot import Robot
 
     report = Report()
     given = read_input(path, chosen, report)
     show_diagnostics(report, chosen)
-    look = Look(chosen.size, chosen.view, chosen.pose, chosen.collision, chosen.frames, chosen.inertia)
+    wanted = PictureOptions(chosen.size, chosen.view, chosen.pose, chosen.collision, chosen.frames, chosen.inertia)
     return open_studio(
-        Robot(given.mechanism, given.source.files), given.source.name if is_drawn(given.format) and path != "-" else None, look
+        Robot(given.mechanism, given.source.files), given.source.name if is_drawn(given.format) and path != "-" else None, wanted
     )
 
 

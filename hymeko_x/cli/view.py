@@ -47,8 +47,8 @@ def run_view(chosen: argparse.Namespace) -> int:
         server = viser.ViserServer("127.0.0.1", chosen.port if is_local else _INSIDE, label="hymeko-x", verbose=False)
     try:
         with TemporaryDirectory(prefix="hymeko-x-") as folder:
-            judge = partial(verdict_of, chosen=chosen)
-            session = Session(server, chosen.inputs, partial(read_side, chosen=chosen), judge, folder)
+            verify = partial(verdict_of, chosen=chosen)
+            session = Session(server, chosen.inputs, partial(read_side, chosen=chosen), verify, folder)
             inside = server.get_port()
             print(f"http://127.0.0.1:{inside}" if is_local else _guarded(chosen.host, chosen.port, inside), flush=True)
             session.watch()

@@ -48,7 +48,7 @@ def _joins_two_points(edge: RobotEdge) -> bool:
 
 
 def _mounted(mechanism: Mechanism) -> Mapping[Id, MountView]:
-    return {view.thing: view for views in mechanism.mounts.values() for view in views if view.thing.kind == "frame"}
+    return {view.mounted: view for views in mechanism.mounts.values() for view in views if view.mounted.kind == "frame"}
 
 
 def _ends(edge: RobotEdge, mounted: Mapping[Id, MountView]) -> dict[Id, Vec3]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.values import Pose
-    from hymeko_x.meshes.change import Change
+    from hymeko_x.meshes.change import MeshChange
     from hymeko_x.meshes.submesh import Submesh
 
     Fetch = Callable[[str], bytes | None]
@@ -98,14 +98,14 @@ def _of_meshes(key: Id, before: Submesh | None, after: Submesh | None, further: 
     from hymeko_x.meshes.change import changes, sorted_triangles
     from hymeko_x.meshes.reader import merged
 
-    found: Sequence[Change] = changes(before, after)
+    found: Sequence[MeshChange] = changes(before, after)
     if found and (pieces := tuple(piece for piece in further if piece is not None)):
         found = min(found, changes(*map(sorted_triangles, (before, merged((after, *pieces))))), key=_triangles_changed)
     for name, was, now in found:
         yield Difference(key, f"content.{name}", _shown(was), _shown(now))
 
 
-def _triangles_changed(found: Sequence[Change]) -> float:
+def _triangles_changed(found: Sequence[MeshChange]) -> float:
     from hymeko_x.meshes.change import TRIANGLES
 
     return sum(abs(change.before - change.after) for change in found if change.name == TRIANGLES) if found else -1.0

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.compare.leaves import Leaves, Path
-    from hymeko_x.ir.fields import Layout
+    from hymeko_x.ir.fields import FieldLayout
     from hymeko_x.ir.holder import Holder
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
     from hymeko_x.ir.parts import Parameters
@@ -280,7 +280,7 @@ def _short(value: object) -> str:
     return repr(value) if isinstance(value, str) else str(value)
 
 
-def _short_part(value: object, layout: Layout) -> str:
+def _short_part(value: object, layout: FieldLayout) -> str:
     if isinstance(value, Edge):
         return _short_edge(value)
     if isinstance(value, Arc):

@@ -80,12 +80,12 @@ def losses_between(
     format: Format,
     leaves: Mapping[Id, Leaves] | None = None,
     *,
-    is_carried: bool = False,
+    is_kept: bool = False,
 ) -> tuple[Loss, ...]:
     """Everything in which what was written and read back differs from the mechanism; what is only described otherwise, once.
 
     ``aligned`` is what was read back, aligned with the mechanism; ``renamed`` is what only the alignment
-    changed; ``leaves`` is in what their elements differ, if that is known; ``is_carried`` whether the file will carry what got lost.
+    changed; ``leaves`` is in what their elements differ, if that is known; ``is_kept`` whether what got lost is kept.
     """
     tolerance = Tolerance(1e-12, format.precision, by_vector=True) if format.precision else TOLERANCE
     differences = diff(mechanism, aligned, tolerance, leaves)
@@ -96,7 +96,7 @@ def losses_between(
     renamed = (difference for difference in renamed if not _is_number(difference, mechanism))
     found = (*renamed, *kept, *_notes_that_count(mechanism, aligned))
     lost = [difference for difference in found if not _is_boilerplate(difference, mechanism, format)]
-    return tuple([_loss(difference, mechanism, aligned, names, is_kept=is_carried or is_held(difference)) for difference in lost])
+    return tuple([_loss(difference, mechanism, aligned, names, is_kept=is_kept or is_held(difference)) for difference in lost])
 
 
 def _is_number(difference: Difference, mechanism: Mechanism) -> bool:

@@ -156,7 +156,7 @@ def _came_as_file(before: object, after: object) -> bool:
 def _links(before: Mechanism, after: Mechanism) -> frozenset[Id]:
     """The mounts of frames that are links of their own in both mechanisms, and the frames, but for those that a size shows."""
     views = [view for views in before.mounts.values() for view in views if is_link(view) and view.body in after.graph.vertices]
-    return frozenset([*(view.id for view in views), *(view.thing for view in views if before.vertex(view.thing, Frame) == Frame())])
+    return frozenset([*(view.id for view in views), *(view.mounted for view in views if before.vertex(view.mounted, Frame) == Frame())])
 
 
 def _keyframes(before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Id]:

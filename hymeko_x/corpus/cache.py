@@ -31,7 +31,7 @@ POLL_SECONDS = 0.1
 LOCK_SECONDS = 3600.0
 
 
-class Watch(Protocol):
+class DownloadProgress(Protocol):
     """A callback that shows the progress of a download."""
 
     def __call__(self, package: WheelPackage, received: int) -> None:
@@ -63,7 +63,7 @@ def is_fetched(package: WheelPackage, root: Path) -> bool:
     return package_path(package, root).is_dir()
 
 
-def fetch(package: WheelPackage, root: Path, *, watch: Watch = _unwatched) -> Path:
+def fetch(package: WheelPackage, root: Path, *, watch: DownloadProgress = _unwatched) -> Path:
     """Download and unpack a package unless it is there; return its folder. Safe when several processes do it at once.
 
     Raises: Refusal HX210 or HX213 when pip cannot download it, HX212 when the wheel is not the catalogue's, HX002 when the cache
@@ -78,7 +78,7 @@ def fetch(package: WheelPackage, root: Path, *, watch: Watch = _unwatched) -> Pa
         raise refuse(codes.CANNOT_WRITE, f"the cache '{root}' cannot be written: {error}", hint=f"set {CACHE_VARIABLE}") from error
 
 
-def _fetch_alone(package: WheelPackage, final: Path, watch: Watch) -> Path:
+def _fetch_alone(package: WheelPackage, final: Path, watch: DownloadProgress) -> Path:
     """Do it under a lock; a process that waited finds the work done. What a killed run left behind is removed first."""
     from filelock import FileLock
 
@@ -96,7 +96,7 @@ def _fetch_alone(package: WheelPackage, final: Path, watch: Watch) -> Path:
     return final
 
 
-def _fill(package: WheelPackage, part: Path, watch: Watch) -> Path:
+def _fill(package: WheelPackage, part: Path, watch: DownloadProgress) -> Path:
     """Download, check and unpack inside ``part``; return the folder with the content."""
     wheel = download(package, part / "wheel", watch)
     check(package, wheel)
@@ -108,7 +108,7 @@ def _fill(package: WheelPackage, part: Path, watch: Watch) -> Path:
     return content
 
 
-def download(package: WheelPackage, folder: Path, watch: Watch = _unwatched) -> Path:
+def download(package: WheelPackage, folder: Path, watch: DownloadProgress = _unwatched) -> Path:
     """Let pip put the package's wheel into ``folder``; return its path.
 
     Raises: Refusal HX213 when the index cannot be reached, else HX210 with pip's own last words.

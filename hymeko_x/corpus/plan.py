@@ -19,7 +19,7 @@ READ, ENGINE, CONVERT, VERIFY = "read", "engine", "convert", "verify"
 """The steps of one file: our reader, the format's reference reader, and for each target a conversion and its verification."""
 
 
-class Limits(Struct, frozen=True):
+class ProcessLimits(Struct, frozen=True):
     """What one process may use: wall-clock seconds, and bytes of memory, of which MuJoCo reserves some that it never touches."""
 
     seconds: float = 180.0
@@ -33,7 +33,7 @@ class Plan(Struct, frozen=True):
     verify: bool = True
     samples: int = 20
     meshes: bool = True
-    limits: Limits = Limits()
+    limits: ProcessLimits = ProcessLimits()
 
     def steps(self, source: str) -> tuple[str, ...]:
         """The steps of a file of this format, in order: ``read``, ``engine``, then ``convert:TARGET`` and ``verify:TARGET``."""
@@ -85,7 +85,7 @@ _CPU_FACTOR = 4
 _MEGABYTE = 1e6
 
 
-def set_limits(limits: Limits) -> None:
+def set_limits(limits: ProcessLimits) -> None:
     """Bound the memory of this process and its processor time, leave no core dump, and end it when its parent is gone."""
     _end_with_parent()
     try:

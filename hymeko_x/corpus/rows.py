@@ -1,6 +1,6 @@
 """The results of a batch run for one robot: facts that every run repeats, and costs that no two runs share.
 
-One :class:`Robot` per file, one :class:`Leg` per file and target format, one :class:`Cost` per measured step. Facts and costs
+One :class:`RobotRow` per file, one :class:`Leg` per file and target format, one :class:`Cost` per measured step. Facts and costs
 are kept apart, so that the facts of two runs can be compared byte for byte.
 """
 
@@ -25,7 +25,7 @@ CRASHED, TIMED_OUT, OUT_OF_MEMORY, UNREAD = "crashed", "timed out", "out of memo
 """The answers of a step that did not; and of a conversion whose source could not be read."""
 
 
-class Robot(Struct, frozen=True):
+class RobotRow(Struct, frozen=True):
     """One file as it was found. ``engine`` is the answer of the format's reference reader, ``reader`` which one that was where it
     accepts the file; ``whole`` is False where other files of the format are included, so that the lengths are not those of
     the robot."""
@@ -97,7 +97,7 @@ class Cost(Struct, frozen=True):
 class Outcome(Struct, frozen=True):
     """Everything about one file."""
 
-    robot: Robot
+    robot: RobotRow
     legs: tuple[Leg, ...]
     costs: tuple[Cost, ...]
 
@@ -109,7 +109,7 @@ class Outcome(Struct, frozen=True):
 def outcome_from_json(document: Mapping[str, Any]) -> Outcome:
     """The outcome in a part. Raises: KeyError or TypeError when it is none."""
     legs = tuple(Leg(**item) for item in document["legs"])
-    return Outcome(Robot(**document["robot"]), legs, tuple(Cost(**item) for item in document["costs"]))
+    return Outcome(RobotRow(**document["robot"]), legs, tuple(Cost(**item) for item in document["costs"]))
 
 
 def with_verdict(leg: Leg, verdict: Leg) -> Leg:
@@ -135,11 +135,11 @@ def tables_of(outcomes: Iterable[Outcome]) -> Tables:
         rows[0].append(_row(outcome.robot))
         rows[1].extend(map(_row, outcome.legs))
         rows[2].extend(map(_row, outcome.costs))
-    robots, legs, costs = _frame(Robot, rows[0]), _frame(Leg, rows[1]), _frame(Cost, rows[2])
+    robots, legs, costs = _frame(RobotRow, rows[0]), _frame(Leg, rows[1]), _frame(Cost, rows[2])
     return Tables(robots.sort("key"), legs.sort("key", "target"), costs.sort("key", "step"))
 
 
-def _row(row: Robot | Leg | Cost) -> dict[str, Any]:
+def _row(row: RobotRow | Leg | Cost) -> dict[str, Any]:
     return {key: _listed(value) for key, value in asdict(row).items()}
 
 
@@ -148,7 +148,7 @@ def _listed(value: Any) -> Any:
     return [{"name": name, "value": item} for name, item in sorted(value.items())] if isinstance(value, Mapping) else value
 
 
-def _frame(kind: type[Robot | Leg | Cost], rows: list[dict[str, Any]]) -> pl.DataFrame:
+def _frame(kind: type[RobotRow | Leg | Cost], rows: list[dict[str, Any]]) -> pl.DataFrame:
     import polars as pl
 
     types: dict[str, Any] = {"str": pl.String, "int": pl.Int64, "int | None": pl.Int64, "float": pl.Float64, "bool": pl.Boolean}

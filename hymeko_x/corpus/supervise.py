@@ -14,7 +14,7 @@ from msgspec.structs import replace
 from hymeko_x import formats
 from hymeko_x.corpus import rows
 from hymeko_x.corpus.plan import CONVERT, ENGINE, READ, VERIFY
-from hymeko_x.corpus.rows import Cost, Leg, Outcome, Robot
+from hymeko_x.corpus.rows import Cost, Leg, Outcome, RobotRow
 from hymeko_x.corpus.work import NOTES, work
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ _MOST_DEATHS = 3
 _NO_MEMORY = ("bad_alloc", "allocate memory", "MemoryError", "out of memory")
 
 
-class End(NamedTuple):
+class Failure(NamedTuple):
     """Why a step did not come to its end."""
 
     status: str
@@ -105,7 +105,7 @@ def supervise(case: Case, plan: Plan, folder: str, processes: Processes, task: T
     """Have a file worked on until each of its steps has an answer. Whatever a step does, the others get theirs."""
     steps = plan.steps(case.format)
     notes: dict[str, dict[str, Any]] = {}
-    ends: dict[str, End] = {}
+    ends: dict[str, Failure] = {}
     deaths = 0
     while todo := _left(steps, notes, ends):
         with tempfile.TemporaryDirectory(prefix="hymeko-x-", ignore_cleanup_errors=True) as scratch:
@@ -122,7 +122,7 @@ def supervise(case: Case, plan: Plan, folder: str, processes: Processes, task: T
     return _outcome(case, plan, steps, notes, ends)
 
 
-def _left(steps: tuple[str, ...], notes: Mapping[str, object], ends: Mapping[str, End]) -> tuple[str, ...]:
+def _left(steps: tuple[str, ...], notes: Mapping[str, object], ends: Mapping[str, Failure]) -> tuple[str, ...]:
     """The steps that are still to be done: none when the source cannot be read, no verification of what was not written."""
     read = notes.get(READ)
     if READ in ends or (isinstance(read, dict) and read["found"]["status"] != rows.DONE):
@@ -146,50 +146,50 @@ def _is_from_outside(error: BaseException | None) -> bool:
     return isinstance(error, ProcessExpired) and error.exitcode in _FROM_OUTSIDE
 
 
-def _end_of(error: BaseException | None, plan: Plan) -> End:
+def _end_of(error: BaseException | None, plan: Plan) -> Failure:
     """The answer for the step at which a process ended."""
     from pebble import ProcessExpired
 
     if error is None:
-        return End(rows.FAILED, "the process ended without a word")
+        return Failure(rows.FAILED, "the process ended without a word")
     if isinstance(error, Late | TimeoutError):
-        return End(rows.TIMED_OUT, f"more than {plan.limits.seconds:g} s")
+        return Failure(rows.TIMED_OUT, f"more than {plan.limits.seconds:g} s")
     if isinstance(error, ProcessExpired):
         return _end_of_process(error.exitcode or 0)
     words = f"{type(error).__name__}: {' '.join(str(error).split())}"
     if isinstance(error, MemoryError) or any(word in words for word in _NO_MEMORY):
-        return End(rows.OUT_OF_MEMORY, f"more than {plan.limits.bytes / 2**20:g} MiB")
-    return End(rows.FAILED, words[:300])
+        return Failure(rows.OUT_OF_MEMORY, f"more than {plan.limits.bytes / 2**20:g} MiB")
+    return Failure(rows.FAILED, words[:300])
 
 
-def _end_of_process(code: int) -> End:
+def _end_of_process(code: int) -> Failure:
     if code >= 0:
-        return End(rows.CRASHED, f"exit code {code}")
+        return Failure(rows.CRASHED, f"exit code {code}")
     name = signal.Signals(-code).name
     if name == "SIGXCPU":
-        return End(rows.TIMED_OUT, "too much processor time")
-    return End(rows.OUT_OF_MEMORY if name == "SIGKILL" else rows.CRASHED, f"killed by {name}")
+        return Failure(rows.TIMED_OUT, "too much processor time")
+    return Failure(rows.OUT_OF_MEMORY if name == "SIGKILL" else rows.CRASHED, f"killed by {name}")
 
 
 # ---- rows ------------------------------------------------------------------------------------------------------------
 
 
-def _outcome(case: Case, plan: Plan, steps: tuple[str, ...], notes: Mapping[str, dict[str, Any]], ends: Mapping[str, End]) -> Outcome:
+def _outcome(case: Case, plan: Plan, steps: tuple[str, ...], notes: Mapping[str, dict[str, Any]], ends: Mapping[str, Failure]) -> Outcome:
     robot = _robot(case, plan, notes, ends)
     legs = tuple(_leg(robot, target, notes, ends) for target in plan.targets(case.format))
     return Outcome(robot, legs, tuple(Cost(**notes[step]["cost"]) for step in steps if step in notes))
 
 
-def _robot(case: Case, plan: Plan, notes: Mapping[str, dict[str, Any]], ends: Mapping[str, End]) -> Robot:
+def _robot(case: Case, plan: Plan, notes: Mapping[str, dict[str, Any]], ends: Mapping[str, Failure]) -> RobotRow:
     if READ in ends:
-        return Robot(case.key, case.package, case.format, status=ends[READ].status, reason=ends[READ].reason)
-    robot = Robot(**notes[READ]["found"])
+        return RobotRow(case.key, case.package, case.format, status=ends[READ].status, reason=ends[READ].reason)
+    robot = RobotRow(**notes[READ]["found"])
     if ENGINE in ends:
         return replace(robot, engine=ends[ENGINE].status, engine_reason=ends[ENGINE].reason)
     return replace(robot, **notes[ENGINE]["found"]) if ENGINE in notes else robot
 
 
-def _leg(robot: Robot, target: str, notes: Mapping[str, dict[str, Any]], ends: Mapping[str, End]) -> Leg:
+def _leg(robot: RobotRow, target: str, notes: Mapping[str, dict[str, Any]], ends: Mapping[str, Failure]) -> Leg:
     convert, verify = f"{CONVERT}:{target}", f"{VERIFY}:{target}"
     empty = Leg(robot.key, robot.format, target)
     if robot.status != rows.DONE:

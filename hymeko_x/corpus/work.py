@@ -21,7 +21,7 @@ from msgspec.structs import asdict, replace
 from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.corpus.lengths import lengths
 from hymeko_x.corpus.plan import CONVERT, ENGINE, READ, forget_peak, peak_megabytes, set_limits
-from hymeko_x.corpus.rows import DONE, REFUSED, Cost, Leg, Robot
+from hymeko_x.corpus.rows import DONE, REFUSED, Cost, Leg, RobotRow
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.ir.parts import Body, Joint, Shape
 from hymeko_x.reporting.aspects import Aspect, aspect_of
@@ -47,7 +47,7 @@ _PHYSICAL = (Aspect.PHYSICS, Aspect.SETTINGS)
 _INDEX = re.compile(r"\[[^\]]*\]")
 
 
-class Desk(Struct):
+class FileWork(Struct):
     """What the steps of one file share: the source as it was read, and the reference reader's model of it."""
 
     case: Case
@@ -73,7 +73,7 @@ def work(case: Case, plan: Plan, folder: str, scratch: str, steps: Sequence[str]
         read = _read(case, Path(folder), found)
     if read is None:
         return
-    desk = Desk(case, plan, Path(folder), bench, *read)
+    desk = FileWork(case, plan, Path(folder), bench, *read)
     if plan.verify:
         with _measured(case, ENGINE, bench, steps) as found:
             found.update(_ask_engine(desk))
@@ -105,7 +105,7 @@ def _measured(case: Case, step: str, scratch: Path, steps: Sequence[str]) -> Ite
 def _read(case: Case, folder: Path, found: dict[str, Any]) -> tuple[Source, Mechanism] | None:
     """The source and its mechanism, or None when our reader refuses it. Reading is confined to the folder."""
     report = Report()
-    robot = Robot(case.key, case.package, case.format)
+    robot = RobotRow(case.key, case.package, case.format)
     try:
         source = disk.open_source(str(folder / case.path), confine=folder)
         source = replace(source, arguments=dict(case.arguments))
@@ -118,7 +118,7 @@ def _read(case: Case, folder: Path, found: dict[str, Any]) -> tuple[Source, Mech
     return source, mechanism
 
 
-def _as_found(robot: Robot, source: Source) -> Robot:
+def _as_found(robot: RobotRow, source: Source) -> RobotRow:
     includes = formats.by_name(robot.format).includes
     return replace(
         robot,
@@ -128,7 +128,7 @@ def _as_found(robot: Robot, source: Source) -> Robot:
     )
 
 
-def counted(robot: Robot, mechanism: Mechanism, report: Report) -> Robot:
+def counted(robot: RobotRow, mechanism: Mechanism, report: Report) -> RobotRow:
     """The row of a file with the numbers of its bodies, joints, dofs and shapes."""
     joints = [joint for _, joint, _ in mechanism.edges(Joint)]
     bodies = len([*mechanism.vertices(Body)])
@@ -137,7 +137,7 @@ def counted(robot: Robot, mechanism: Mechanism, report: Report) -> Robot:
     return replace(robot, bodies=bodies, joints=len(joints), dofs=dofs, shapes=shapes, diagnostics=_by_code(report))
 
 
-def _ask_engine(desk: Desk) -> dict[str, str]:
+def _ask_engine(desk: FileWork) -> dict[str, str]:
     """The reference reader's model goes to the desk; what it answered is returned."""
     from hymeko_x.verify import model_of
     from hymeko_x.verify.meshes import Meshes
@@ -153,7 +153,7 @@ def _ask_engine(desk: Desk) -> dict[str, str]:
 # ---- the results -----------------------------------------------------------------------------------------------------
 
 
-def _convert(desk: Desk, target: str) -> Leg:
+def _convert(desk: FileWork, target: str) -> Leg:
     """The source in a target format, written to the scratch folder with its meshes beside it."""
     leg = Leg(desk.case.key, desk.case.format, target)
     report = Report()
@@ -161,7 +161,7 @@ def _convert(desk: Desk, target: str) -> Leg:
     shutil.rmtree(output.parent, ignore_errors=True)
     output.parent.mkdir()
     try:
-        place = pipeline.Place(str(output.parent), "copy")
+        place = pipeline.OutputPlace(str(output.parent), "copy")
         result = pipeline.convert(desk.mechanism, formats.by_name(target), Options(keep="beside"), desk.source.files, report, place)
         disk.write_package(result.package, str(output), desk.source.files)
     except Refusal as refusal:
@@ -180,7 +180,7 @@ def _convert(desk: Desk, target: str) -> Leg:
     )
 
 
-def _verify(desk: Desk, target: str) -> Leg:
+def _verify(desk: FileWork, target: str) -> Leg:
     """The verdict about a result, as a leg that holds nothing else. The result is removed."""
     leg = Leg(desk.case.key, desk.case.format, target)
     output = _output(desk, target)
@@ -198,7 +198,7 @@ def _verify(desk: Desk, target: str) -> Leg:
     return replace(leg, verdict=verdict.verdict, verdict_reason=reason, failed=failed, unsaid=unsaid)
 
 
-def _verdict(desk: Desk, model: KinematicModel, output: Path) -> Verdict:
+def _verdict(desk: FileWork, model: KinematicModel, output: Path) -> Verdict:
     from hymeko_x.verify import verify
 
     names = {name.decode("utf-8", "replace") for name in _PACKAGE.findall(output.read_bytes())}
@@ -207,7 +207,7 @@ def _verdict(desk: Desk, model: KinematicModel, output: Path) -> Verdict:
     return verify(model, output, samples=desk.plan.samples, meshes=desk.meshes or True, packages=packages)
 
 
-def _output(desk: Desk, target: str) -> Path:
+def _output(desk: FileWork, target: str) -> Path:
     return desk.scratch / target / f"robot{formats.by_name(target).suffixes[0]}"
 
 

@@ -12,7 +12,7 @@ from hymeko_x.draw.render import open_studio
 
 if TYPE_CHECKING:
     from hymeko_x.draw.files import Picture
-    from hymeko_x.draw.render import Look
+    from hymeko_x.draw.render import PictureOptions
     from hymeko_x.ir.holder import Holder
 
 _ROUNDING = 4
@@ -29,7 +29,7 @@ class Subject(NamedTuple):
     path: str | None
 
 
-class Pair(Struct, frozen=True, eq=False):
+class PicturePair(Struct, frozen=True, eq=False):
     """Two pictures, the places in which they differ, red on the faded first one, and their part of all pixels."""
 
     before: Picture
@@ -38,20 +38,20 @@ class Pair(Struct, frozen=True, eq=False):
     changed: float
 
 
-def pair(a: Subject, b: Subject, look: Look) -> Pair:
+def pair(a: Subject, b: Subject, wanted: PictureOptions) -> PicturePair:
     """The first robot in the pose in which its file places the bodies, the second one with its joints there; light, ground and camera are
     those that fit the first one.
 
     Raises: Refusal as :class:`hymeko_x.draw.render.Studio`.
     """
-    look = replace(look, is_authored=True)
-    studio = open_studio(a.robot, a.path, look)
-    return compared(studio.still(), open_studio(b.robot, b.path, look, studio).still())
+    wanted = replace(wanted, is_authored=True)
+    studio = open_studio(a.robot, a.path, wanted)
+    return compared(studio.still(), open_studio(b.robot, b.path, wanted, studio).still())
 
 
-def compared(before: Picture, after: Picture) -> Pair:
+def compared(before: Picture, after: Picture) -> PicturePair:
     """Two pictures of one size, and where they differ by more than rounding."""
     is_changed = np.abs(before.astype(np.int16) - after).max(axis=2) > _ROUNDING
     grey = before.mean(axis=2, keepdims=True).repeat(3, axis=2)
     faded = (255.0 - _GREY * (255.0 - grey)).astype(np.uint8)
-    return Pair(before, after, np.where(is_changed[..., None], np.array(_CHANGED, np.uint8), faded), float(is_changed.mean()))
+    return PicturePair(before, after, np.where(is_changed[..., None], np.array(_CHANGED, np.uint8), faded), float(is_changed.mean()))

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 _FRAMES_PER_JOINT = 24
 
 
-class Look(Struct, frozen=True):
+class PictureOptions(Struct, frozen=True):
     """How a picture is made. ``size`` is width and height in pixels; ``pose`` the name of a keyframe, or a JSON file of joint positions.
 
     ``is_authored``: in the pose in which the file places the bodies, whatever keyframes there are: for comparisons.
@@ -59,29 +59,29 @@ class Studio:
     Raises: Refusal HX302 when MuJoCo refuses the robot, HX501 when nothing is visible, HX502 when this machine cannot draw.
     """
 
-    def __init__(self, spec: Any, name: str, look: Look, like: Studio | None = None) -> None:
+    def __init__(self, spec: Any, name: str, wanted: PictureOptions, like: Studio | None = None) -> None:
         import mujoco
 
         self._name = name
-        self._look = look
-        if look.is_authored:
+        self._wanted = wanted
+        if wanted.is_authored:
             remove_surroundings(spec)
         if like is not None:  # its scene fits this robot, which is compiled once then
-            add_scene(spec, like.corners, look.size, is_compared=look.is_authored)
+            add_scene(spec, like.corners, wanted.size, is_compared=wanted.is_authored)
         self.model = _compiled(spec, name)
         self.data = mujoco.MjData(self.model)
-        self._place(look.pose)
-        self._groups = _groups(self.model, collision=look.collision)
+        self._place(wanted.pose)
+        self._groups = _groups(self.model, collision=wanted.collision)
         self.corners: Corners = self._own_corners() if like is None else like.corners
         if like is None:
-            add_scene(spec, self.corners, look.size, is_compared=look.is_authored)
+            add_scene(spec, self.corners, wanted.size, is_compared=wanted.is_authored)
             self.model = _compiled(spec, name)
             placed, self.data = self.data, mujoco.MjData(self.model)
             self.data.qpos[:] = placed.qpos
             mujoco.mj_forward(self.model, self.data)
         else:
             self._take_joints_of(like)
-        self._options = _options(look, self._groups)
+        self._options = _options(wanted, self._groups)
 
     def still(self, *, tendons: bool = True) -> Picture:
         """One picture of the robot in its pose. ``tendons``: with those that lead along a path."""
@@ -121,8 +121,8 @@ class Studio:
         """Pictures in these configurations, or which object each pixel shows: its number and its type."""
         from hymeko_x.draw.camera import fitted_camera
 
-        width, height = self._look.size
-        camera = fitted_camera(corners, self._look.view, width / height, FIELD_OF_VIEW)
+        width, height = self._wanted.size
+        camera = fitted_camera(corners, self._wanted.view, width / height, FIELD_OF_VIEW)
         renderer = _renderer(self.model, width, height)
         if segmented:
             renderer.enable_segmentation_rendering()
@@ -145,7 +145,7 @@ class Studio:
         import mujoco
 
         keys = {self.model.key(number).name: number for number in range(self.model.nkey)}
-        wanted = pose or ("home" if "home" in keys and not self._look.is_authored else None)
+        wanted = pose or ("home" if "home" in keys and not self._wanted.is_authored else None)
         if wanted is not None and wanted in keys:
             mujoco.mj_resetDataKeyframe(self.model, self.data, keys[wanted])
         elif wanted is not None and wanted.endswith(".json"):
@@ -185,7 +185,7 @@ def is_drawn(format: Format) -> bool:
     return "mujoco" in format.memory
 
 
-def open_studio(robot: Mechanism | Holder, path: str | None, look: Look, like: Studio | None = None) -> Studio:
+def open_studio(robot: Mechanism | Holder, path: str | None, wanted: PictureOptions, like: Studio | None = None) -> Studio:
     """The scene of a robot. ``path`` is its file where MuJoCo reads that format itself; other formats go through our own writer.
 
     A holder that has ``files`` finds its meshes and images itself; those of a mechanism are looked for beside the file that it was read
@@ -199,14 +199,14 @@ def open_studio(robot: Mechanism | Holder, path: str | None, look: Look, like: S
 
     if path is not None:
         try:
-            return Studio(in_own_thread(lambda: mujoco.MjSpec.from_file(path)), path, look, like)
+            return Studio(in_own_thread(lambda: mujoco.MjSpec.from_file(path)), path, wanted, like)
         except (ValueError, RuntimeError) as error:
             raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}", Origin(path), hint=hint_for(error)) from error
     row = next(row for row in formats.FORMATS if is_drawn(row))
     with TemporaryDirectory(prefix="hymeko-x-") as folder:
         file = Path(folder) / f"robot{row.suffixes[0]}"
         api.dump(robot, file, row.name)
-        return Studio(mujoco.MjSpec.from_file(str(file)), mechanism_of(robot).name, look, like)
+        return Studio(mujoco.MjSpec.from_file(str(file)), mechanism_of(robot).name, wanted, like)
 
 
 def _compiled(spec: Any, name: str) -> mujoco.MjModel:
@@ -245,16 +245,16 @@ def _groups(model: mujoco.MjModel, *, collision: bool) -> frozenset[int]:
     return VISUAL if any(model.geom_group[geom] in VISUAL for geom in (moving or own)) else VISUAL | COLLISION
 
 
-def _options(look: Look, groups: frozenset[int]) -> mujoco.MjvOption:
+def _options(wanted: PictureOptions, groups: frozenset[int]) -> mujoco.MjvOption:
     import mujoco
 
     options = mujoco.MjvOption()
     options.geomgroup[:] = [group in groups or group == 0 for group in range(mujoco.mjNGROUP)]
     options.sitegroup[:] = 0
-    options.flags[mujoco.mjtVisFlag.mjVIS_INERTIA] = look.inertia
-    options.flags[mujoco.mjtVisFlag.mjVIS_RANGEFINDER] = not look.is_authored  # rays, which depend on sensors that formats lack
-    options.flags[mujoco.mjtVisFlag.mjVIS_TRANSPARENT] = look.frames or look.inertia
-    if look.frames:
+    options.flags[mujoco.mjtVisFlag.mjVIS_INERTIA] = wanted.inertia
+    options.flags[mujoco.mjtVisFlag.mjVIS_RANGEFINDER] = not wanted.is_authored  # rays, which depend on sensors that formats lack
+    options.flags[mujoco.mjtVisFlag.mjVIS_TRANSPARENT] = wanted.frames or wanted.inertia
+    if wanted.frames:
         options.frame = mujoco.mjtFrame.mjFRAME_BODY
     return options
 

@@ -55,21 +55,21 @@ def _open(found: Trees, phi: Floats) -> Exception:
     return refuse(codes.NO_FORM, message, found.mechanism.origin(name), element=str(name), hint=hint)
 
 
-class Reduction(NamedTuple):
+class IndependentVelocities(NamedTuple):
     """Independent velocities of a mechanism with loops: their columns, and the matrix T with z' = T times these velocities."""
 
     columns: list[int]
     basis: Floats
 
 
-def reduction(found: Trees, z: Sequence[float]) -> Reduction:
+def reduction(found: Trees, z: Sequence[float]) -> IndependentVelocities:
     """The velocities that the loops leave at z: those of driven joints first, then in the order of the tree."""
     import numpy as np
 
     links = independent(found.tree, found.followers)
     width = sum(link.velocities for link in links)
     if not found.closures:
-        return Reduction(list(range(width)), np.eye(width))
+        return IndependentVelocities(list(range(width)), np.eye(width))
     _, slope = found.closed_at(z)
     driven = {arc.target for _, _, arcs in found.mechanism.edges(parts.Drive) for arc in arcs if arc.sign < 0}
     order = [(link.joint in driven, column) for column, link in enumerate([k for k in links for _ in range(k.velocities)])]
@@ -81,7 +81,7 @@ def reduction(found: Trees, z: Sequence[float]) -> Reduction:
     if following:
         basis[following] = np.linalg.lstsq(slope[:, following], -slope[:, columns], rcond=_RANK)[0]
     basis[np.abs(basis) < 1e-14] = 0.0
-    return Reduction(columns, basis)
+    return IndependentVelocities(columns, basis)
 
 
 def _following(slope: Floats, candidates: Sequence[int]) -> list[int]:

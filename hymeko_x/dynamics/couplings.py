@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.dynamics.lines import Terms
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
-    from hymeko_x.dynamics.tree import Link, Tree
+    from hymeko_x.dynamics.tree import Link, LinkTree
     from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
@@ -41,7 +41,7 @@ class _Relation(NamedTuple):
     own: list[int]
 
 
-class Expanded(NamedTuple):
+class TreeMotion(NamedTuple):
     """The whole motion of a tree: q, v, the matrix G with v = G z', and what of the accelerations G' z' is."""
 
     q: list[Number]
@@ -50,7 +50,7 @@ class Expanded(NamedTuple):
     drift: list[Number]
 
 
-def followers_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Follower, ...], list[Id]]:
+def followers_of(mechanism: Mechanism, tree: LinkTree) -> tuple[tuple[Follower, ...], list[Id]]:
     """The active couplings of joints and of fixed tendons, leaders before followers; and those that have no equations here.
 
     Raises: Refusal (HX403) where joints follow each other in a circle.
@@ -75,7 +75,7 @@ def _active(mechanism: Mechanism) -> Iterator[tuple[Id, tuple[RobotArc, ...]]]:
         yield from ((key, edge.arcs) for key, edge in formats.loaded(native.couplings)(mechanism) if edge.data.active)
 
 
-def _relation(mechanism: Mechanism, tree: Tree, arcs: tuple[RobotArc, ...]) -> _Relation | None:
+def _relation(mechanism: Mechanism, tree: LinkTree, arcs: tuple[RobotArc, ...]) -> _Relation | None:
     """What a coupling makes zero; None for polynomials of several coordinates, and for ends that are no sum of coordinates."""
     constant, polynomials, own = 0.0, dict[int, list[float]](), list[int]()
     for arc in arcs:
@@ -92,7 +92,7 @@ def _relation(mechanism: Mechanism, tree: Tree, arcs: tuple[RobotArc, ...]) -> _
     return _Relation(constant, polynomials, own) if sum(arc.sign > 0 for arc in arcs) == 1 else None
 
 
-def _length(mechanism: Mechanism, tree: Tree, arc: RobotArc) -> Terms | None:
+def _length(mechanism: Mechanism, tree: LinkTree, arc: RobotArc) -> Terms | None:
     """The links that add up to the coordinate of a joint, which is 0 for a fixed one, or to the length of a fixed tendon."""
     edge = mechanism.graph.edges.get(arc.target)
     if edge is not None and isinstance(edge.data, parts.Tendon):
@@ -129,7 +129,7 @@ def _leads(link: int, followers: list[int], found: Mapping[int, Follower]) -> bo
     return False
 
 
-def _ordered(mechanism: Mechanism, tree: Tree, left: Mapping[int, Follower]) -> tuple[Follower, ...]:
+def _ordered(mechanism: Mechanism, tree: LinkTree, left: Mapping[int, Follower]) -> tuple[Follower, ...]:
     """The followers, each behind those that it follows."""
     order = TopologicalSorter({place: [leader for leader, _ in follower.leaders] for place, follower in left.items()})
     try:
@@ -142,13 +142,13 @@ def _ordered(mechanism: Mechanism, tree: Tree, left: Mapping[int, Follower]) -> 
         raise refuse(codes.ALGEBRAIC_LOOP, message, mechanism.origin(joint), element=str(joint)) from error
 
 
-def independent(tree: Tree, followers: Sequence[Follower]) -> list[Link]:
+def independent(tree: LinkTree, followers: Sequence[Follower]) -> list[Link]:
     """The links that follow no other."""
     dependent = {follower.link for follower in followers}
     return [link for place, link in enumerate(tree.links) if place not in dependent]
 
 
-def expanded(tree: Tree, followers: Sequence[Follower], z: Sequence[Number], rate: Sequence[Number], numbers: Numbers) -> Expanded:
+def expanded(tree: LinkTree, followers: Sequence[Follower], z: Sequence[Number], rate: Sequence[Number], numbers: Numbers) -> TreeMotion:
     """The motion of the whole tree when its independent links have the coordinates z and the velocities ``rate``."""
     q: list[Number] = [0] * tree.nq
     v: list[Number] = [0] * tree.nv
@@ -171,7 +171,7 @@ def expanded(tree: Tree, followers: Sequence[Follower], z: Sequence[Number], rat
             v[own.v] = add(v[own.v], times(slope, v[other.v]))
             ratios[own.v] = [add(a, times(slope, b)) for a, b in zip(ratios[own.v], ratios[other.v], strict=True)]
             drift[own.v] = add(drift[own.v], add(times(slope, drift[other.v]), times(bend, v[other.v] * v[other.v])))
-    return Expanded(q, v, ratios, drift)
+    return TreeMotion(q, v, ratios, drift)
 
 
 def _polynomial(coefficients: Sequence[float], x: Number, numbers: Numbers) -> tuple[Number, Number, Number]:

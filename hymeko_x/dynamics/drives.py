@@ -8,7 +8,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x.dynamics.laws import Law, damped, law_of
-from hymeko_x.dynamics.lines import Line, act, geared, line_of, push_of, seats_of, stretches, terms_of
+from hymeko_x.dynamics.lines import ActionLine, act, geared, line_of, push_of, seats_of, stretches, terms_of
 from hymeko_x.dynamics.numbers import add, dot, factorize, floats, solve, times
 from hymeko_x.dynamics.recursion import Constants, mass_matrix
 from hymeko_x.ir import parts
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.dynamics.lines import Seats
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
-    from hymeko_x.dynamics.tree import Tree
+    from hymeko_x.dynamics.tree import LinkTree
     from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
@@ -32,7 +32,7 @@ class Motor(Struct, frozen=True):
     """An actuator that acts along a line by its law; ``unit`` is that of its control, "" where it follows from nothing."""
 
     id: Id
-    line: Line
+    line: ActionLine
     law: Law
     unit: str
 
@@ -40,7 +40,7 @@ class Motor(Struct, frozen=True):
 # ---- from the mechanism ------------------------------------------------------------------------------------------------------------
 
 
-def motors_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Motor, ...], Left]:
+def motors_of(mechanism: Mechanism, tree: LinkTree) -> tuple[tuple[Motor, ...], Left]:
     """The actuators that act along a line by a law; and all others."""
     driven = {arc.target: arcs for _, _, arcs in mechanism.edges(parts.Drive) for arc in arcs if arc.sign > 0}
     seats = seats_of(mechanism, tree)
@@ -57,7 +57,7 @@ def motors_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Motor, ...], Left
     return _with_damping(found, tree), left
 
 
-def _driven_line(mechanism: Mechanism, tree: Tree, arcs: Sequence[RobotArc], seats: Seats) -> Line | str:
+def _driven_line(mechanism: Mechanism, tree: LinkTree, arcs: Sequence[RobotArc], seats: Seats) -> ActionLine | str:
     """What an actuator acts along; as text the reason why there is no such line."""
     ends = [arc for arc in arcs if arc.sign < 0]
     if len(ends) != 1:
@@ -70,10 +70,10 @@ def _driven_line(mechanism: Mechanism, tree: Tree, arcs: Sequence[RobotArc], sea
     if ends[0].target.kind == "frame":
         return push_of(ends[0], seats)
     terms = terms_of(mechanism, tree, ends)
-    return f"drives {ends[0].target}, which has more than one coordinate or none" if terms is None else Line(terms)
+    return f"drives {ends[0].target}, which has more than one coordinate or none" if terms is None else ActionLine(terms)
 
 
-def _with_damping(motors: Sequence[Motor], tree: Tree) -> tuple[Motor, ...]:
+def _with_damping(motors: Sequence[Motor], tree: LinkTree) -> tuple[Motor, ...]:
     """The motors with damping ratios as damping: at the mass 1 / (r M^-1 r') that each feels in the configuration of reference."""
     if not any(motor.law.damping_ratio for motor in motors):
         return tuple(motors)
@@ -88,7 +88,7 @@ def _damped(motor: Motor, row: list[Number], factors: tuple[Matrix, list[Number]
     return replace(motor, law=damped(motor.law, 1.0 / ease)) if ease > 0.0 else motor
 
 
-def _unit(actuator: parts.Actuator, line: Line, tree: Tree) -> str:
+def _unit(actuator: parts.Actuator, line: ActionLine, tree: LinkTree) -> str:
     """The unit of the control of a joint's actuator; "" where it follows from nothing."""
     if len(line.terms) != 1 or actuator.kind in ("general", "damper", "cylinder"):
         return ""

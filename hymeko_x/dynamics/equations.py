@@ -9,7 +9,7 @@ from msgspec import Struct
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.dynamics.layout import PID_GAINS, Layout, layout_of, tex, variable
+from hymeko_x.dynamics.layout import PID_GAINS, NetworkLayout, layout_of, tex, variable
 from hymeko_x.dynamics.numbers import add, dot, evaluate, factorize, solve, times
 from hymeko_x.dynamics.system import System, Variable
 from hymeko_x.ir import lumped
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
     from hymeko_x.ir.ids import Id
-    from hymeko_x.networks.network import Branch, Element, Network
+    from hymeko_x.networks.network import Branch, Network, NetworkElement
 
 
 class Motion(NamedTuple):
@@ -33,7 +33,7 @@ class Motion(NamedTuple):
 class Moment(Struct, frozen=True, dict=True):
     """A network at a state x, with inputs u and parameters p, in one number type."""
 
-    layout: Layout
+    layout: NetworkLayout
     x: Sequence[Number]
     u: Sequence[Number]
     p: Sequence[Number]
@@ -85,7 +85,7 @@ class Moment(Struct, frozen=True, dict=True):
             total = add(total, times(self.numbers.exact(element.count), self._force(branch, element, along)))
         return total
 
-    def _force(self, branch: Branch, element: Element, along: Motion) -> Number:
+    def _force(self, branch: Branch, element: NetworkElement, along: Motion) -> Number:
         match element.part:
             case lumped.Spring(_, rest):
                 k, x = self.parameter(element.id, "stiffness"), add(along.position, self.numbers.exact(-rest))

@@ -32,10 +32,10 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from hymeko_x.dynamics.couplings import Expanded
+    from hymeko_x.dynamics.couplings import TreeMotion
     from hymeko_x.dynamics.loops import Closing
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
-    from hymeko_x.dynamics.spatial import Frame
+    from hymeko_x.dynamics.spatial import FramePose
     from hymeko_x.dynamics.tree import Link
     from hymeko_x.dynamics.trees import Trees
 
@@ -103,7 +103,7 @@ class MechanicalHamiltonian(Struct, frozen=True, dict=True):
         return Blocks(mass, _potential(found, constants, whole.q, numbers), _structure(links, q, p), r, g)
 
     @staticmethod
-    def _rates(mass: Matrix, p: Sequence[Number], whole: Expanded) -> list[Number]:
+    def _rates(mass: Matrix, p: Sequence[Number], whole: TreeMotion) -> list[Number]:
         """The velocities of all coordinates, on which friction depends."""
         own = solve(factorize(mass), p)
         return [dot(row, own) for row in whole.ratios]
@@ -249,7 +249,7 @@ def _momentum(velocity: Variable) -> Variable:
 def _potential(found: Trees, constants: Constants, q: Sequence[Number], numbers: Numbers) -> Number:
     """The energy of springs and weights, and of actuators that pull by position."""
     energy = spring_energy(constants, found.cables, q)
-    world: list[Frame] = []
+    world: list[FramePose] = []
     frames = constants.link_frames(q)
     up = constants.pull.linear
     for link, frame, inertia in zip(found.tree.links, frames, constants.inertias, strict=True):
@@ -314,7 +314,7 @@ def _place(matrix: Matrix, row: int, column: int, block: Matrix) -> None:
 # ---- formulas ------------------------------------------------------------------------------------------------------------------------
 
 
-class Formulas(NamedTuple):
+class HamiltonFormulas(NamedTuple):
     """The form in symbols: M and V over q1, q2, ..., and J, R, G over p1, p2, ... as well."""
 
     mass: Any
@@ -324,7 +324,7 @@ class Formulas(NamedTuple):
     G: Any
 
 
-def formulas_of(form: MechanicalHamiltonian) -> Formulas:
+def formulas_of(form: MechanicalHamiltonian) -> HamiltonFormulas:
     """The form as formulas of sympy, numbers as fractions. For a handful of dofs."""
     import sympy
 
@@ -336,7 +336,7 @@ def formulas_of(form: MechanicalHamiltonian) -> Formulas:
     shapes = ((len(p), len(p)), (width, width), (width, width), (width, inputs))
     matrices = (blocks.mass, blocks.J, blocks.R, blocks.G)
     m, j, r, g = (sympy.Matrix(*shape, [x for row in rows for x in row]) for shape, rows in zip(shapes, matrices, strict=True))
-    return Formulas(m.applyfunc(sympy.trigsimp), sympy.trigsimp(blocks.potential), j, r, g)
+    return HamiltonFormulas(m.applyfunc(sympy.trigsimp), sympy.trigsimp(blocks.potential), j, r, g)
 
 
 def loop_formulas(form: MechanicalHamiltonian) -> tuple[Any, Any]:

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.ir.ids import Id
-    from hymeko_x.networks.network import Element, Network
+    from hymeko_x.networks.network import Network, NetworkElement
 
 
-class Layout(Struct, frozen=True):
+class NetworkLayout(Struct, frozen=True):
     """Which column each variable of a network has, by element and quantity."""
 
     network: Network
@@ -36,7 +36,7 @@ class Layout(Struct, frozen=True):
     parameter_of: Mapping[tuple[Id, str], int]
 
 
-def layout_of(network: Network) -> Layout:
+def layout_of(network: Network) -> NetworkLayout:
     """The variables of a network in order."""
     controllers = [(branch, element) for branch, element in network.ports if element.part.kind != "effort"]  # type: ignore[union-attr]
     states: dict[tuple[Id, str], Variable] = {}
@@ -55,7 +55,7 @@ def layout_of(network: Network) -> Layout:
             states[key, "position"] = variable(network, key, "position")
     parameters = _parameters(network)
     numbered = [{key: number for number, key in enumerate(table)} for table in (states, inputs, parameters)]
-    return Layout(network, tuple(states.values()), tuple(inputs.values()), tuple(parameters.values()), *numbered)
+    return NetworkLayout(network, tuple(states.values()), tuple(inputs.values()), tuple(parameters.values()), *numbered)
 
 
 def variable(network: Network, key: Id, quantity: str, value: float = 0.0, rate_of: str = "") -> Variable:
@@ -130,7 +130,7 @@ def _parameters(network: Network) -> dict[tuple[Id, str], Variable]:
     }
 
 
-def _gains(element: Element, port: lumped.Port) -> dict[str, float]:
+def _gains(element: NetworkElement, port: lumped.Port) -> dict[str, float]:
     given = dict(port.parameters)
     gains = {gain: given.get(gain, 0.0) for gain in PID_GAINS}
     if not all(isinstance(value, float) for value in gains.values()) or not any(gains.values()):

@@ -14,7 +14,7 @@ from msgspec import Struct
 
 from hymeko_x.dynamics.numbers import add, dot, times
 from hymeko_x.dynamics.recursion import constant
-from hymeko_x.dynamics.spatial import Frame, Spatial, composed, cross, inner, plus, scaled, turned, turned_back, up
+from hymeko_x.dynamics.spatial import FramePose, Spatial, composed, cross, inner, plus, scaled, turned, turned_back, up
 from hymeko_x.dynamics.tree import frame_of
 from hymeko_x.ir.kinematics import dof_at
 from hymeko_x.ir.mechanism import numbers_weight
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
 
     from hymeko_x.dynamics.numbers import Number
     from hymeko_x.dynamics.recursion import Constants
-    from hymeko_x.dynamics.tree import Tree
+    from hymeko_x.dynamics.tree import LinkTree
     from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
     from hymeko_x.ir.parts import Tendon
 
     Terms = tuple[tuple[int, float], ...]
-    Seats = Mapping[Id, tuple[int, Frame]]
+    Seats = Mapping[Id, tuple[int, FramePose]]
 
 _TINY = 1e-300
 """In m^2, added to squares of distances: where two sites meet, the pull between them is zero instead of undefined."""
@@ -53,7 +53,7 @@ class Push(NamedTuple):
     force: tuple[float, ...]
 
 
-class Line(Struct, frozen=True):
+class ActionLine(Struct, frozen=True):
     """What a tendon or an actuator acts along.
 
     Its length is the sum of coefficient * position over the links of ``terms``, and of factor * distance over the pairs of ``spans``.
@@ -78,7 +78,7 @@ class Stretch(NamedTuple):
 # ---- from the mechanism ------------------------------------------------------------------------------------------------------------
 
 
-def terms_of(mechanism: Mechanism, tree: Tree, arcs: Sequence[RobotArc]) -> Terms | None:
+def terms_of(mechanism: Mechanism, tree: LinkTree, arcs: Sequence[RobotArc]) -> Terms | None:
     """The links of one coordinate that arcs lead to, with the first number of their weights; None where an arc leads elsewhere."""
     found = []
     for arc in arcs:
@@ -89,14 +89,14 @@ def terms_of(mechanism: Mechanism, tree: Tree, arcs: Sequence[RobotArc]) -> Term
     return tuple(found)
 
 
-def seats_of(mechanism: Mechanism, tree: Tree) -> Seats:
+def seats_of(mechanism: Mechanism, tree: LinkTree) -> Seats:
     """The link that each frame is on (-1 is the world), and the frame's pose in it."""
     views = [view for views in mechanism.mounts.values() for view in views if view.body in tree.bodies]
-    found = {view.thing: (*tree.bodies[view.body], frame_of(view.pose)) for view in views}
+    found = {view.mounted: (*tree.bodies[view.body], frame_of(view.pose)) for view in views}
     return {key: (link, composed(place, frame)) for key, (link, place, frame) in found.items()}
 
 
-def path_of(mechanism: Mechanism, arcs: Sequence[RobotArc], seats: Seats) -> Line | str:
+def path_of(mechanism: Mechanism, arcs: Sequence[RobotArc], seats: Seats) -> ActionLine | str:
     """The line of a tendon's path through sites and over pulleys; as text the reason why there is none."""
     spans: list[tuple[Point, Point, float]] = []
     before: Point | None = None
@@ -116,46 +116,48 @@ def path_of(mechanism: Mechanism, arcs: Sequence[RobotArc], seats: Seats) -> Lin
         if before is not None:
             spans.append((before, point, 1.0 / divisor))
         before = point
-    return Line(spans=tuple(spans))
+    return ActionLine(spans=tuple(spans))
 
 
-def line_of(mechanism: Mechanism, tree: Tree, tendon: Tendon, arcs: Sequence[RobotArc], seats: Seats) -> Line | str:
+def line_of(mechanism: Mechanism, tree: LinkTree, tendon: Tendon, arcs: Sequence[RobotArc], seats: Seats) -> ActionLine | str:
     """The line of a tendon; as text the reason why there is none."""
     if tendon.kind != FIXED:
         return path_of(mechanism, arcs, seats)
     terms = terms_of(mechanism, tree, arcs)
-    return "combines what is no coordinate of a joint" if terms is None else Line(terms)
+    return "combines what is no coordinate of a joint" if terms is None else ActionLine(terms)
 
 
-def push_of(arc: RobotArc, seats: Seats) -> Line | str:
+def push_of(arc: RobotArc, seats: Seats) -> ActionLine | str:
     """The line of an actuator at a frame: its gear is a force and a torque in the frame's axes. As text why there is none."""
     if arc.target not in seats:
         return f"acts on {arc.target}, which is on no body"
     link, seat = seats[arc.target]
     gear = [*(numbers_weight(arc) or (1.0,)), *[0.0] * 6][:6]
     wrench = up(seat, Spatial(gear[3:], gear[:3]))
-    return Line(push=Push(link, tuple(map(float, wrench.angular)), tuple(map(float, wrench.linear))))
+    return ActionLine(push=Push(link, tuple(map(float, wrench.angular)), tuple(map(float, wrench.linear))))
 
 
-def geared(line: Line, gear: float) -> Line:
+def geared(line: ActionLine, gear: float) -> ActionLine:
     """A line whose length counts ``gear`` times."""
     terms = tuple((link, gear * factor) for link, factor in line.terms)
-    return Line(terms, tuple((a, b, gear * factor) for a, b, factor in line.spans), line.push)
+    return ActionLine(terms, tuple((a, b, gear * factor) for a, b, factor in line.spans), line.push)
 
 
 # ---- lengths and rows --------------------------------------------------------------------------------------------------------------
 
 
-def stretches(lines: Sequence[Line], constants: Constants, q: Sequence[Number]) -> list[Stretch]:
+def stretches(lines: Sequence[ActionLine], constants: Constants, q: Sequence[Number]) -> list[Stretch]:
     """The lines at a configuration of all coordinates."""
     frames = constants.link_frames(q) if any(line.spans or line.push for line in lines) else []
-    world: list[Frame] = []
+    world: list[FramePose] = []
     for link, frame in zip(constants.tree.links, frames, strict=False):
         world.append(composed(world[link.parent], frame) if link.parent >= 0 else frame)
     return [_stretch(line, constants, q, frames, world) for line in lines]
 
 
-def _stretch(line: Line, constants: Constants, q: Sequence[Number], frames: Sequence[Frame], world: Sequence[Frame]) -> Stretch:
+def _stretch(
+    line: ActionLine, constants: Constants, q: Sequence[Number], frames: Sequence[FramePose], world: Sequence[FramePose]
+) -> Stretch:
     tree, numbers = constants.tree, constants.numbers
     length: Number = 0
     row: dict[int, Number] = {}
@@ -172,7 +174,7 @@ def _stretch(line: Line, constants: Constants, q: Sequence[Number], frames: Sequ
 
 
 def _span(
-    row: dict[int, Number], a: Point, b: Point, factor: float, constants: Constants, frames: Sequence[Frame], world: Sequence[Frame]
+    row: dict[int, Number], a: Point, b: Point, factor: float, constants: Constants, frames: Sequence[FramePose], world: Sequence[FramePose]
 ) -> Number:
     """factor * the distance of two points; what it adds to the row is the wrenches of a unit of pull on both links."""
     numbers = constants.numbers
@@ -193,11 +195,11 @@ def _span(
     return times(scale, distance)
 
 
-def _in_world(link: int, place: list[Number], world: Sequence[Frame]) -> list[Number]:
+def _in_world(link: int, place: list[Number], world: Sequence[FramePose]) -> list[Number]:
     return plus(world[link].position, turned(world[link].rotation, place)) if link >= 0 else place
 
 
-def _common(a: int, b: int, tree: Tree) -> int:
+def _common(a: int, b: int, tree: LinkTree) -> int:
     """The last link that moves both of two links; -1 is the world. Parents stand before children."""
     while a != b:
         if a > b:
@@ -207,7 +209,7 @@ def _common(a: int, b: int, tree: Tree) -> int:
     return a
 
 
-def _feel(row: dict[int, Number], link: int, until: int, wrench: Spatial, constants: Constants, frames: Sequence[Frame]) -> None:
+def _feel(row: dict[int, Number], link: int, until: int, wrench: Spatial, constants: Constants, frames: Sequence[FramePose]) -> None:
     """Add the power of a wrench on a link along the motions of it and of all above it, as far as ``until``."""
     while link != until:
         own = constants.tree.links[link]

@@ -20,7 +20,7 @@ from hymeko_x.dynamics.spatial import (
     NOTHING,
     UNIT,
     ZERO,
-    Frame,
+    FramePose,
     Spatial,
     composed,
     cross,
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
     from hymeko_x.dynamics.recursion import Constants
     from hymeko_x.dynamics.spatial import Rotation, Vector
-    from hymeko_x.dynamics.tree import Tree
+    from hymeko_x.dynamics.tree import LinkTree
     from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism
 
@@ -58,11 +58,11 @@ _PROXIMAL = 1e-8
 """Of the mean entry on the diagonal of J M^-1 J'; what it changes shrinks by this factor with each of the rounds."""
 
 
-class End(NamedTuple):
+class ClosureEnd(NamedTuple):
     """One end of a closure: a frame on a link (-1 is the world)."""
 
     link: int
-    frame: Frame
+    frame: FramePose
 
 
 class Closure(Struct, frozen=True):
@@ -72,8 +72,8 @@ class Closure(Struct, frozen=True):
     """
 
     id: Id
-    first: End
-    second: End
+    first: ClosureEnd
+    second: ClosureEnd
     along: tuple[tuple[float, ...], ...]
     fixed: bool = False
     hinge: tuple[float, ...] | None = None
@@ -92,22 +92,22 @@ class Closing(NamedTuple):
     drift: list[Number]
 
 
-def closures_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Closure, ...], list[Id]]:
+def closures_of(mechanism: Mechanism, tree: LinkTree) -> tuple[tuple[Closure, ...], list[Id]]:
     """The active loops between two bodies or frames on bodies, and those that have no equations here."""
-    mounts = {view.thing: (view.body, frame_of(view.pose)) for views in mechanism.mounts.values() for view in views}
+    mounts = {view.mounted: (view.body, frame_of(view.pose)) for views in mechanism.mounts.values() for view in views}
     found, left = [], []
     for key, loop, arcs in mechanism.edges(parts.Loop):
         if not loop.active:
             continue
         directions = _directions(loop)
-        places = [mounts.get(arc.target, (arc.target, Frame(UNIT, ZERO))) for arc in arcs]
+        places = [mounts.get(arc.target, (arc.target, FramePose(UNIT, ZERO))) for arc in arcs]
         if directions is None or len(places) != 2 or any(body not in tree.bodies for body, _ in places):
             left.append(key)
             continue
         ends = []
         for arc, (body, frame) in zip(arcs, places, strict=True):
             link, place = tree.bodies[body]
-            ends.append(End(link, composed(composed(place, frame), frame_of(pose_weight(arc)))))
+            ends.append(ClosureEnd(link, composed(composed(place, frame), frame_of(pose_weight(arc)))))
         found.append(Closure(key, ends[0], ends[1], *directions))
     return tuple(found), left
 
@@ -139,16 +139,16 @@ def across(axis: Sequence[float]) -> tuple[tuple[float, ...], ...]:
 # ---- phi, J and J' v -------------------------------------------------------------------------------------------------------------
 
 
-class Pair(NamedTuple):
+class ClosureEnds(NamedTuple):
     """Where the ends of a closure are: the links' frames in them, the rotation of the second end and its place in the first's axes."""
 
     closure: Closure
-    inside: tuple[Frame, Frame]
+    inside: tuple[FramePose, FramePose]
     turn: Rotation
     gap: Vector
 
 
-class Change(NamedTuple):
+class Displacement(NamedTuple):
     """A place and a rotation, or a derivative of them."""
 
     gap: Vector
@@ -161,13 +161,13 @@ def closing(closures: Sequence[Closure], constants: Constants, q: Sequence[Numbe
     pairs = _pairs(closures, constants, frames)
     velocities = _velocities(constants, frames, v)
     accelerations = _accelerations(constants, frames, v, velocities)
-    gap = [x for pair in pairs for x in _gaps(pair.closure, Change(pair.gap, pair.turn), constants.numbers)]
+    gap = [x for pair in pairs for x in _gaps(pair.closure, Displacement(pair.gap, pair.turn), constants.numbers)]
     slope = [row for pair in pairs for row in _rows(pair, constants, frames)]
     drift = [x for pair in pairs for x in _gaps(pair.closure, _bend(pair, velocities, accelerations), constants.numbers)]
     return Closing(gap, slope, drift)
 
 
-def _rows(pair: Pair, constants: Constants, frames: Sequence[Frame]) -> Matrix:
+def _rows(pair: ClosureEnds, constants: Constants, frames: Sequence[FramePose]) -> Matrix:
     """The rows of a closure in J. What moves both ends together moves no closure: only links from there to the ends count."""
     closure, tree = pair.closure, constants.tree
     chains = list(_chain(closure.first.link, tree)), list(_chain(closure.second.link, tree))
@@ -186,14 +186,14 @@ def _rows(pair: Pair, constants: Constants, frames: Sequence[Frame]) -> Matrix:
     return rows
 
 
-def _chain(link: int, tree: Tree) -> Iterator[int]:
+def _chain(link: int, tree: LinkTree) -> Iterator[int]:
     """A link and all above it."""
     while link >= 0:
         yield link
         link = tree.links[link].parent
 
 
-def _velocities(constants: Constants, frames: Sequence[Frame], v: Sequence[Number]) -> list[Spatial]:
+def _velocities(constants: Constants, frames: Sequence[FramePose], v: Sequence[Number]) -> list[Spatial]:
     """The velocities of all links, in their own axes; NOTHING, which is last, is that of the world."""
     found: list[Spatial] = []
     for i, (link, frame) in enumerate(zip(constants.tree.links, frames, strict=True)):
@@ -202,7 +202,7 @@ def _velocities(constants: Constants, frames: Sequence[Frame], v: Sequence[Numbe
     return [*found, NOTHING]
 
 
-def _accelerations(constants: Constants, frames: Sequence[Frame], v: Sequence[Number], velocities: Sequence[Spatial]) -> list[Spatial]:
+def _accelerations(constants: Constants, frames: Sequence[FramePose], v: Sequence[Number], velocities: Sequence[Spatial]) -> list[Spatial]:
     """What of the links' accelerations comes from velocities alone, without gravity; NOTHING, which is last, is that of the world."""
     found: list[Spatial] = []
     for i, (link, frame) in enumerate(zip(constants.tree.links, frames, strict=True)):
@@ -212,8 +212,8 @@ def _accelerations(constants: Constants, frames: Sequence[Frame], v: Sequence[Nu
     return [*found, NOTHING]
 
 
-def _pairs(closures: Sequence[Closure], constants: Constants, frames: Sequence[Frame]) -> list[Pair]:
-    world: list[Frame] = []
+def _pairs(closures: Sequence[Closure], constants: Constants, frames: Sequence[FramePose]) -> list[ClosureEnds]:
+    world: list[FramePose] = []
     for link, frame in zip(constants.tree.links, frames, strict=True):
         world.append(composed(world[link.parent], frame) if link.parent >= 0 else frame)
     found = []
@@ -222,24 +222,24 @@ def _pairs(closures: Sequence[Closure], constants: Constants, frames: Sequence[F
         links = closure.first.link, closure.second.link
         a, b = (composed(world[k], inside) if k >= 0 else inside for k, inside in zip(links, insides, strict=True))
         gap = turned_back(a.rotation, plus(b.position, _opposite(a.position)))
-        found.append(Pair(closure, (insides[0], insides[1]), product(transposed(a.rotation), b.rotation), gap))
+        found.append(ClosureEnds(closure, (insides[0], insides[1]), product(transposed(a.rotation), b.rotation), gap))
     return found
 
 
-def _at_ends(pair: Pair, motions: Sequence[Spatial]) -> tuple[Spatial, Spatial]:
+def _at_ends(pair: ClosureEnds, motions: Sequence[Spatial]) -> tuple[Spatial, Spatial]:
     """The motions of both ends, in their own axes."""
     first, second = pair.inside
     return down(first, motions[pair.closure.first.link]), down(second, motions[pair.closure.second.link])
 
 
-def _rate(pair: Pair, a: Spatial, b: Spatial) -> Change:
+def _rate(pair: ClosureEnds, a: Spatial, b: Spatial) -> Displacement:
     """d' = R v_b - v_a - w_a x d and R' = [w]x R, w = R w_b - w_a, of the motions a and b of both ends."""
     w = plus(turned(pair.turn, b.angular), _opposite(a.angular))
     moved = plus(turned(pair.turn, b.linear), _opposite(plus(a.linear, cross(a.angular, pair.gap))))
-    return Change(moved, _crossed(w, pair.turn))
+    return Displacement(moved, _crossed(w, pair.turn))
 
 
-def _bend(pair: Pair, velocities: Sequence[Spatial], accelerations: Sequence[Spatial]) -> Change:
+def _bend(pair: ClosureEnds, velocities: Sequence[Spatial], accelerations: Sequence[Spatial]) -> Displacement:
     """The derivatives of d' and R' when velocities change by ``accelerations``."""
     (a, b), (a_rate, b_rate) = _at_ends(pair, velocities), _at_ends(pair, accelerations)
     rate = _rate(pair, a, b)
@@ -247,10 +247,10 @@ def _bend(pair: Pair, velocities: Sequence[Spatial], accelerations: Sequence[Spa
     w_rate = plus(plus(turned(pair.turn, b_rate.angular), turned(rate.turn, b.angular)), _opposite(a_rate.angular))
     moved = plus(plus(turned(rate.turn, b.linear), turned(pair.turn, b_rate.linear)), _opposite(a_rate.linear))
     moved = plus(moved, _opposite(plus(cross(a_rate.angular, pair.gap), cross(a.angular, rate.gap))))
-    return Change(moved, total(_crossed(w_rate, pair.turn), _crossed(w, rate.turn)))
+    return Displacement(moved, total(_crossed(w_rate, pair.turn), _crossed(w, rate.turn)))
 
 
-def _gaps(closure: Closure, change: Change, numbers: Numbers) -> list[Number]:
+def _gaps(closure: Closure, change: Displacement, numbers: Numbers) -> list[Number]:
     """The rows of a closure: phi of a place and a rotation, phi' or phi'' of their derivatives, in which phi is linear."""
     found = [dot(_exact(axis, numbers), change.gap) for axis in closure.along]
     r = change.turn

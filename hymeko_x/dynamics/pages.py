@@ -29,7 +29,7 @@ _NAMED = 3
 STYLES = ("text", "json", "latex", "markdown")
 
 
-class Block(Struct, frozen=True):
+class MatrixBlock(Struct, frozen=True):
     """A matrix or a scalar with its name and the names of its rows and columns."""
 
     name: str
@@ -38,18 +38,18 @@ class Block(Struct, frozen=True):
     columns: tuple[Variable, ...] = ()
 
 
-class Page(Struct, frozen=True):
+class FormPage(Struct, frozen=True):
     """A form of the equations: a sentence of formula, its variables, its blocks, and facts that follow."""
 
     name: str
     form: str
     formula: str
     variables: Mapping[str, tuple[Variable, ...]]
-    blocks: tuple[Block, ...]
+    blocks: tuple[MatrixBlock, ...]
     facts: Mapping[str, Any]
 
 
-def page_of(dynamics: Lumped | Multibody, form: str, *, symbolic: bool = False, at: str = "") -> Page:
+def page_of(dynamics: Lumped | Multibody, form: str, *, symbolic: bool = False, at: str = "") -> FormPage:
     """The equations in one form; those of a mechanism at an operating point (``Multibody.at``), in symbols everywhere.
 
     Raises: Refusal (HX408) when there is no such form.
@@ -74,7 +74,7 @@ def page_of(dynamics: Lumped | Multibody, form: str, *, symbolic: bool = False, 
         "equilibrium": "yes" if point.is_equilibrium else "no",
         **_left_out(dynamics),
     }
-    return Page(dynamics.tree.name, form, formula, variables, blocks, {**place, **_loops(dynamics, point.positions), **facts})
+    return FormPage(dynamics.tree.name, form, formula, variables, blocks, {**place, **_loops(dynamics, point.positions), **facts})
 
 
 def _holding(dynamics: Multibody, point: OperatingPoint) -> str:
@@ -108,21 +108,27 @@ def _where(dynamics: Multibody, positions: Sequence[float]) -> str:
 _ENERGY = "x' = (J - R) dH/dx + G u, y = G' dH/dx, x = (q, p), H = p' M(q)^-1 p / 2 + V(q)"
 
 
-def _energy_formulas(dynamics: Multibody) -> Page:
+def _energy_formulas(dynamics: Multibody) -> FormPage:
     form = dynamics.port_hamiltonian()
     m, v, j, r, g = formulas_of(form)
-    blocks: tuple[Block, ...] = (Block("M", m), Block("V", v), Block("J", j), Block("R", r), Block("G", g))
+    blocks: tuple[MatrixBlock, ...] = (
+        MatrixBlock("M", m),
+        MatrixBlock("V", v),
+        MatrixBlock("J", j),
+        MatrixBlock("R", r),
+        MatrixBlock("G", g),
+    )
     if dynamics.closures:
-        blocks = (*blocks, *[Block(name, value) for name, value in zip(("phi", "B"), loop_formulas(form), strict=True)])
+        blocks = (*blocks, *[MatrixBlock(name, value) for name, value in zip(("phi", "B"), loop_formulas(form), strict=True)])
     names = {"states": form.states, "inputs": dynamics.system.inputs}
-    return Page(dynamics.tree.name, "port-hamiltonian", _formula(dynamics), names, blocks, {})
+    return FormPage(dynamics.tree.name, "port-hamiltonian", _formula(dynamics), names, blocks, {})
 
 
 def _formula(dynamics: Multibody) -> str:
     return _ENERGY.replace(" u, y", " u + B f, 0 = B' dH/dx, phi(q) = 0, y") if dynamics.closures else _ENERGY
 
 
-def _energy_at(dynamics: Multibody, at: str) -> Page:
+def _energy_at(dynamics: Multibody, at: str) -> FormPage:
     """The form at rest at an operating point."""
     import numpy as np
 
@@ -133,7 +139,7 @@ def _energy_at(dynamics: Multibody, at: str) -> Page:
     if dynamics.closures:
         slope = dynamics.closed_at(positions)[1]
         matrices.append(("B", np.vstack([np.zeros((len(positions), len(slope))), slope.T])))
-    blocks = (Block("H", sympy_matrix(energy)[0]), *[Block(name, sympy_matrix(matrix)) for name, matrix in matrices])
+    blocks = (MatrixBlock("H", sympy_matrix(energy)[0]), *[MatrixBlock(name, sympy_matrix(matrix)) for name, matrix in matrices])
     checks = {
         "antisymmetric J": bool((j == -j.T).all()),
         "positive semidefinite R": np.linalg.eigvalsh(r).min() >= -1e-12 * np.abs(r).max(),
@@ -144,31 +150,31 @@ def _energy_at(dynamics: Multibody, at: str) -> Page:
         **{name: "yes" if holds else "no" for name, holds in checks.items()},
     }
     names = {"states": form.states, "inputs": dynamics.system.inputs}
-    return Page(dynamics.tree.name, "port-hamiltonian", _formula(dynamics), names, blocks, facts)
+    return FormPage(dynamics.tree.name, "port-hamiltonian", _formula(dynamics), names, blocks, facts)
 
 
 def _pairs(values: Mapping[str, float]) -> str:
     return ", ".join(f"{name} = {value:.9g}" for name, value in values.items()) or "zero"
 
 
-def _symbolic_page(dynamics: Multibody) -> Page:
+def _symbolic_page(dynamics: Multibody) -> FormPage:
     found, words = dynamics.symbolic(), "M(q) v' + h(q, v) = tau"
-    blocks = [Block("M", found.mass), Block("h", found.bias), Block("g", found.gravity)]
+    blocks = [MatrixBlock("M", found.mass), MatrixBlock("h", found.bias), MatrixBlock("g", found.gravity)]
     if dynamics.motors is not None:
         words += "(q, v, a, u)" if any(v.name.endswith(".activation") for v in dynamics.system.states) else "(q, v, u)"
-        blocks.append(Block("tau", found.driven))
+        blocks.append(MatrixBlock("tau", found.driven))
     if any(found.passive):
         words += " + d(q, v)"
-        blocks.append(Block("d", found.passive))
+        blocks.append(MatrixBlock("d", found.passive))
     if dynamics.closures:
         words += " + J(q)' f, phi(q) = 0, J = dphi/dq"
-        blocks += [Block(name, value) for name, value in zip(("phi", "J"), dynamics.symbolic_loops(), strict=True)]
+        blocks += [MatrixBlock(name, value) for name, value in zip(("phi", "J"), dynamics.symbolic_loops(), strict=True)]
     names = {"states": dynamics.system.states, "inputs": dynamics.system.inputs}
-    return Page(dynamics.tree.name, "second-order", f"{words}, h(q, 0) = g(q)", names, tuple(blocks), {})
+    return FormPage(dynamics.tree.name, "second-order", f"{words}, h(q, 0) = g(q)", names, tuple(blocks), {})
 
 
-def _lumped_page(dynamics: Lumped, form: str, *, symbolic: bool) -> Page:
-    make: Mapping[str, Callable[[], tuple[str, Mapping[str, tuple[Variable, ...]], tuple[Block, ...], Mapping[str, Any]]]] = {
+def _lumped_page(dynamics: Lumped, form: str, *, symbolic: bool) -> FormPage:
+    make: Mapping[str, Callable[[], tuple[str, Mapping[str, tuple[Variable, ...]], tuple[MatrixBlock, ...], Mapping[str, Any]]]] = {
         "state-space": lambda: _state_space(dynamics.state_space(symbolic=symbolic), dynamics.state_space() if symbolic else None),
         "second-order": lambda: _second_order(dynamics.second_order(symbolic=symbolic)),
         "port-hamiltonian": lambda: _port_hamiltonian(dynamics.port_hamiltonian(symbolic=symbolic)),
@@ -177,18 +183,18 @@ def _lumped_page(dynamics: Lumped, form: str, *, symbolic: bool) -> Page:
     formula, variables, blocks, facts = make[form]()
     linear = {} if dynamics.is_linear else {"linearised at": "the initial state"}
     used = {"parameters": dynamics.system.parameters}
-    return Page(dynamics.network.name, form, formula, {**variables, **used}, blocks, {**linear, **facts})
+    return FormPage(dynamics.network.name, form, formula, {**variables, **used}, blocks, {**linear, **facts})
 
 
 def _state_space(space: StateSpace, exact: StateSpace | None) -> Any:
     blocks = [
-        Block("A", space.A, space.states, space.states),
-        Block("B", space.B, space.states, space.inputs),
-        Block("C", space.C, space.outputs, space.states),
-        Block("D", space.D, space.outputs, space.inputs),
+        MatrixBlock("A", space.A, space.states, space.states),
+        MatrixBlock("B", space.B, space.states, space.inputs),
+        MatrixBlock("C", space.C, space.outputs, space.states),
+        MatrixBlock("D", space.D, space.outputs, space.inputs),
     ]
     if any(space.offset):
-        blocks.append(Block("offset", space.offset, space.states))
+        blocks.append(MatrixBlock("offset", space.offset, space.states))
     numbers = exact or space
     n = len(space.states)
     facts = {
@@ -203,23 +209,27 @@ def _state_space(space: StateSpace, exact: StateSpace | None) -> Any:
 
 def _second_order(form: SecondOrder) -> Any:
     blocks = [
-        Block("M", form.M, form.coordinates, form.coordinates),
-        Block("C", form.C, form.coordinates, form.coordinates),
-        Block("K", form.K, form.coordinates, form.coordinates),
-        Block("F", form.F, form.coordinates, form.inputs),
+        MatrixBlock("M", form.M, form.coordinates, form.coordinates),
+        MatrixBlock("C", form.C, form.coordinates, form.coordinates),
+        MatrixBlock("K", form.K, form.coordinates, form.coordinates),
+        MatrixBlock("F", form.F, form.coordinates, form.inputs),
     ]
     if any(form.offset):
-        blocks.append(Block("offset", form.offset, form.coordinates))
+        blocks.append(MatrixBlock("offset", form.offset, form.coordinates))
     formula = "M q'' + C q' + K q = F u" + (" + offset" if any(form.offset) else "")
     return formula, {"coordinates": form.coordinates, "inputs": form.inputs}, tuple(blocks), {}
 
 
 def _port_hamiltonian(form: PortHamiltonian) -> Any:
-    blocks = [Block("H", form.energy), Block("dH/dx", form.gradient, form.states), Block("J", form.J, form.states, form.states)]
-    blocks += [Block("R", form.R, form.states, form.states), Block("G", form.G, form.states, form.inputs)]
+    blocks = [
+        MatrixBlock("H", form.energy),
+        MatrixBlock("dH/dx", form.gradient, form.states),
+        MatrixBlock("J", form.J, form.states, form.states),
+    ]
+    blocks += [MatrixBlock("R", form.R, form.states, form.states), MatrixBlock("G", form.G, form.states, form.inputs)]
     passed = any(form.P) or any(form.S)
     if passed:
-        blocks += [Block("P", form.P, form.states, form.inputs), Block("S", form.S, form.outputs, form.inputs)]
+        blocks += [MatrixBlock("P", form.P, form.states, form.inputs), MatrixBlock("S", form.S, form.outputs, form.inputs)]
     formula = "x' = (J - R) dH/dx + (G - P) u, y = (G + P)' dH/dx + S u" if passed else "x' = (J - R) dH/dx + G u, y = G' dH/dx"
     return formula, {"states": form.states, "inputs": form.inputs, "outputs": form.outputs}, tuple(blocks), {}
 
@@ -227,7 +237,7 @@ def _port_hamiltonian(form: PortHamiltonian) -> Any:
 def _transfer(space: StateSpace) -> Any:
     functions = space.transfer()
     blocks = [
-        Block(f"{output.name} / {source.name}", functions[row][column])
+        MatrixBlock(f"{output.name} / {source.name}", functions[row][column])
         for row, output in enumerate(space.outputs)
         for column, source in enumerate(space.free_inputs)
     ]
@@ -237,12 +247,12 @@ def _transfer(space: StateSpace) -> Any:
 # ---- printing ------------------------------------------------------------------------------------------------------------
 
 
-def printed(page: Page, style: str) -> str:
+def printed(page: FormPage, style: str) -> str:
     """The page in one style, ending with a line break."""
     return {"text": _text, "json": _json, "latex": _latex, "markdown": _markdown}[style](page)
 
 
-def _text(page: Page) -> str:
+def _text(page: FormPage) -> str:
     lines = [f"{page.name}: {page.formula}"]
     for title, variables in page.variables.items():
         lines += ["", title]
@@ -256,7 +266,7 @@ def _text(page: Page) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _block_lines(block: Block) -> list[str]:
+def _block_lines(block: MatrixBlock) -> list[str]:
     if not _is_matrix(block.value):
         return [f"{block.name} = {_entry(block.value)}"]
     if not block.value.cols or not block.value.rows:
@@ -282,7 +292,7 @@ def _is_matrix(value: Any) -> bool:
     return hasattr(value, "rows")
 
 
-def _json(page: Page) -> str:
+def _json(page: FormPage) -> str:
     def entry(value: Any) -> Any:
         return float(value) if getattr(value, "is_number", False) else str(value)
 
@@ -312,7 +322,7 @@ def _json(page: Page) -> str:
     return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
 
 
-def _latex(page: Page) -> str:
+def _latex(page: FormPage) -> str:
     lines = [f"% {page.name}: {page.formula}"]
     for title, variables in page.variables.items():
         if title != "parameters":
@@ -332,7 +342,7 @@ def _tex_name(name: str) -> str:
     return rf"\mathrm{{{name}}}".replace("_", r"\_") if len(name) > 1 else name
 
 
-def _tex(value: Any, page: Page) -> str:
+def _tex(value: Any, page: FormPage) -> str:
     import sympy
 
     names = {sympy.Symbol(v.name): v.symbol for group in page.variables.values() for v in group}
@@ -342,7 +352,7 @@ def _tex(value: Any, page: Page) -> str:
     return text
 
 
-def _markdown(page: Page) -> str:
+def _markdown(page: FormPage) -> str:
     lines = [f"# {page.name}", "", f"`{page.formula}`"]
     for title, variables in page.variables.items():
         valued = title == "parameters"

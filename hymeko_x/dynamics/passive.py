@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 from msgspec.structs import replace
 
-from hymeko_x.dynamics.lines import Line, act, line_of, seats_of, stretches
+from hymeko_x.dynamics.lines import ActionLine, act, line_of, seats_of, stretches
 from hymeko_x.dynamics.numbers import add, dot, floats, times
 from hymeko_x.dynamics.recursion import Constants
 from hymeko_x.dynamics.spatial import minus, of_quaternion, scaled, turned_back
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.dynamics.drives import Left
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
-    from hymeko_x.dynamics.tree import Link, Tree
+    from hymeko_x.dynamics.tree import Link, LinkTree
     from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism
 
@@ -38,7 +38,7 @@ class Cable(Struct, frozen=True):
     """A tendon that acts by itself: friction and a damper, and a spring that does nothing at lengths between the two of ``rest``."""
 
     id: Id
-    line: Line
+    line: ActionLine
     stiffness: float
     damping: float
     rest: tuple[float, float]
@@ -48,7 +48,7 @@ class Cable(Struct, frozen=True):
 # ---- from the mechanism ------------------------------------------------------------------------------------------------------------
 
 
-def cables_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Cable, ...], Left]:
+def cables_of(mechanism: Mechanism, tree: LinkTree) -> tuple[tuple[Cable, ...], Left]:
     """The tendons that act by themselves, and those that do and have no equations here."""
     seats = seats_of(mechanism, tree)
     found, left = [], []
@@ -63,7 +63,7 @@ def cables_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Cable, ...], Left
     return tuple(found), left
 
 
-def _rest(tendon: parts.Tendon, line: Line, tree: Tree) -> tuple[float, float]:
+def _rest(tendon: parts.Tendon, line: ActionLine, tree: LinkTree) -> tuple[float, float]:
     """The lengths at rest: ``springlength``, else that at the rests of the joints' springs, as in MuJoCo."""
     given = dict(tendon.parameters).get("springlength", -1.0)
     ends = tuple(map(float, given if isinstance(given, tuple) else (given,)))
@@ -77,13 +77,13 @@ def _rest(tendon: parts.Tendon, line: Line, tree: Tree) -> tuple[float, float]:
     return length, length
 
 
-def rubbing(tree: Tree, cables: Sequence[Cable]) -> list[Id]:
+def rubbing(tree: LinkTree, cables: Sequence[Cable]) -> list[Id]:
     """The joints and tendons with Coulomb friction."""
     joints = dict.fromkeys(link.joint for link in tree.links if link.dof.friction)
     return [*joints, *[cable.id for cable in cables if cable.friction]]
 
 
-def smooth(tree: Tree, cables: Sequence[Cable]) -> tuple[Tree, tuple[Cable, ...]]:
+def smooth(tree: LinkTree, cables: Sequence[Cable]) -> tuple[LinkTree, tuple[Cable, ...]]:
     """A tree and tendons without Coulomb friction."""
     links = tuple([replace(link, dof=replace(link.dof, friction=0.0)) for link in tree.links])
     return replace(tree, links=links), tuple([replace(cable, friction=0.0) for cable in cables])

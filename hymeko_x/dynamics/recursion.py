@@ -15,7 +15,7 @@ from hymeko_x.dynamics.spatial import (
     UNIT,
     ZERO,
     Articulated,
-    Frame,
+    FramePose,
     Inertia,
     Spatial,
     about,
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
-    from hymeko_x.dynamics.tree import Link, Tree
+    from hymeko_x.dynamics.tree import Link, LinkTree
 
 GRAVITY = (0.0, 0.0, -9.81)
 """In m/s^2, in the world."""
@@ -55,7 +55,7 @@ GRAVITY = (0.0, 0.0, -9.81)
 class Constants:
     """The constants of a tree in one number type: placements, inertias, motion subspaces."""
 
-    def __init__(self, tree: Tree, numbers: Numbers, gravity: Sequence[float] = GRAVITY) -> None:
+    def __init__(self, tree: LinkTree, numbers: Numbers, gravity: Sequence[float] = GRAVITY) -> None:
         self.tree = tree
         self.numbers = numbers
         self.frames = [exact_frame(link.frame, numbers) for link in tree.links]
@@ -64,7 +64,7 @@ class Constants:
         self.armatures = [constant(link.dof.armature, numbers) for link in tree.links]
         self.pull = Spatial(ZERO, [constant(-value, numbers) for value in gravity])
 
-    def link_frames(self, q: Sequence[Number]) -> list[Frame]:
+    def link_frames(self, q: Sequence[Number]) -> list[FramePose]:
         """The pose of each link in its parent at q."""
         pairs = zip(self.tree.links, self.frames, strict=True)
         return [composed(frame, motion(link, q[link.q : link.q + link.coordinates], self.numbers)) for link, frame in pairs]
@@ -82,9 +82,9 @@ def constant(value: float, numbers: Numbers) -> Number:
     return int(value) if value in (0.0, 1.0, -1.0) else numbers.exact(value)
 
 
-def exact_frame(frame: Frame, numbers: Numbers) -> Frame:
+def exact_frame(frame: FramePose, numbers: Numbers) -> FramePose:
     """A constant frame in one number type."""
-    return Frame([[constant(x, numbers) for x in row] for row in frame.rotation], [constant(x, numbers) for x in frame.position])
+    return FramePose([[constant(x, numbers) for x in row] for row in frame.rotation], [constant(x, numbers) for x in frame.position])
 
 
 def inertia_of(link: Link, numbers: Numbers) -> Inertia:
@@ -93,7 +93,7 @@ def inertia_of(link: Link, numbers: Numbers) -> Inertia:
     for frame, inertial in link.bodies:
         xx, yy, zz, xy, xz, yz = (constant(x, numbers) for x in inertial.tensor or (0.0,) * 6)
         at_centre = Inertia(constant(inertial.mass or 0.0, numbers), ZERO, [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        centre = Frame(UNIT, [constant(x, numbers) for x in inertial.com])
+        centre = FramePose(UNIT, [constant(x, numbers) for x in inertial.com])
         whole = joined(whole, seen_from_parent(exact_frame(frame, numbers), seen_from_parent(centre, at_centre)))
     return whole
 
@@ -114,19 +114,19 @@ def subspace(link: Link, numbers: Numbers) -> list[Spatial]:
             return [*(Spatial(ZERO, unit) for unit in UNIT), *(Spatial(unit, ZERO) for unit in UNIT)]
 
 
-def motion(link: Link, q: Sequence[Number], numbers: Numbers) -> Frame:
+def motion(link: Link, q: Sequence[Number], numbers: Numbers) -> FramePose:
     """How far a dof has moved its link at its coordinates."""
     kind = link.dof.kind
     if kind is DofKind.FREE:
-        return Frame(of_quaternion(q[3:]), list(q[:3]))
+        return FramePose(of_quaternion(q[3:]), list(q[:3]))
     if kind is DofKind.BALL:
-        return Frame(of_quaternion(q), ZERO)
+        return FramePose(of_quaternion(q), ZERO)
     axis = [constant(x, numbers) for x in link.dof.axis]
     moved = add(q[0], constant(-link.dof.ref, numbers))
     if kind is DofKind.SLIDE:
-        return Frame(UNIT, scaled(axis, moved))
+        return FramePose(UNIT, scaled(axis, moved))
     turned = about(axis, moved, numbers)
-    return Frame(turned, scaled(scaled(axis, constant(link.dof.pitch, numbers)), moved) if kind is DofKind.SCREW else ZERO)
+    return FramePose(turned, scaled(scaled(axis, constant(link.dof.pitch, numbers)), moved) if kind is DofKind.SCREW else ZERO)
 
 
 def inverse_dynamics(constants: Constants, q: Sequence[Number], v: Sequence[Number], a: Sequence[Number] | None = None) -> list[Number]:
@@ -229,7 +229,7 @@ def forward_dynamics(constants: Constants, q: Sequence[Number], v: Sequence[Numb
     return found
 
 
-def _velocity_terms(constants: Constants, frames: Sequence[Frame], v: Sequence[Number]) -> tuple[list[Spatial], list[Spatial]]:
+def _velocity_terms(constants: Constants, frames: Sequence[FramePose], v: Sequence[Number]) -> tuple[list[Spatial], list[Spatial]]:
     """Of each link the acceleration and the force that its velocity causes: c [7.40] and p^A without what is below it [7.42]."""
     velocities: list[Spatial] = []
     coriolis: list[Spatial] = []

@@ -29,7 +29,7 @@ class Spatial(NamedTuple):
     linear: Vector
 
 
-class Frame(NamedTuple):
+class FramePose(NamedTuple):
     """The pose of a frame in another one: rotation (its axes as columns) and position of its origin."""
 
     rotation: Rotation
@@ -157,9 +157,9 @@ def of_quaternion(quat: Sequence[Number]) -> Rotation:
     ]
 
 
-def composed(a: Frame, b: Frame) -> Frame:
+def composed(a: FramePose, b: FramePose) -> FramePose:
     """The frame b, given in the frame a, where a is given."""
-    return Frame(product(a.rotation, b.rotation), plus(a.position, turned(a.rotation, b.position)))
+    return FramePose(product(a.rotation, b.rotation), plus(a.position, turned(a.rotation, b.position)))
 
 
 # ---- motions and forces --------------------------------------------------------------------------------------------------------
@@ -175,13 +175,13 @@ def times_spatial(a: Spatial, factor: Number) -> Spatial:
     return Spatial(scaled(a.angular, factor), scaled(a.linear, factor))
 
 
-def down(frame: Frame, motion: Spatial) -> Spatial:
+def down(frame: FramePose, motion: Spatial) -> Spatial:
     """A motion given in the parent, in the frame: iXp v [2.28]."""
     moved = plus(motion.linear, cross(motion.angular, frame.position))
     return Spatial(turned_back(frame.rotation, motion.angular), turned_back(frame.rotation, moved))
 
 
-def up(frame: Frame, force: Spatial) -> Spatial:
+def up(frame: FramePose, force: Spatial) -> Spatial:
     """A force given in the frame, in the parent: pXi* f [2.25]."""
     push = turned(frame.rotation, force.linear)
     return Spatial(plus(turned(frame.rotation, force.angular), cross(frame.position, push)), push)
@@ -216,7 +216,7 @@ def joined(a: Inertia, b: Inertia) -> Inertia:
     return Inertia(add(a.mass, b.mass), plus(a.moment, b.moment), total(a.tensor, b.tensor))
 
 
-def seen_from_parent(frame: Frame, inertia: Inertia) -> Inertia:
+def seen_from_parent(frame: FramePose, inertia: Inertia) -> Inertia:
     """An inertia given in the frame, in the parent [2.66]."""
     p, mass = frame.position, inertia.mass
     h = turned(frame.rotation, inertia.moment)
@@ -239,7 +239,7 @@ def force_of(inertia: Articulated, motion: Spatial) -> Spatial:
     return Spatial(couple, plus(turned_back(inertia.b, motion.angular), turned(inertia.c, motion.linear)))
 
 
-def articulated_in_parent(frame: Frame, inertia: Articulated) -> Articulated:
+def articulated_in_parent(frame: FramePose, inertia: Articulated) -> Articulated:
     """The inertia of an articulated body, in the parent: pXi* I^a iXp."""
     a, b, c = (turned_tensor(frame.rotation, block) for block in inertia)
     p = skew(frame.position)

@@ -15,7 +15,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.dynamics.spatial import ZERO, Frame, Inertia
+from hymeko_x.dynamics.spatial import ZERO, FramePose, Inertia
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import DofKind
@@ -46,11 +46,11 @@ class Link(Struct, frozen=True):
     joint: Id
     number: int
     parent: int
-    frame: Frame
+    frame: FramePose
     dof: parts.Dof
     q: int
     v: int
-    bodies: tuple[tuple[Frame, parts.Inertial], ...] = ()
+    bodies: tuple[tuple[FramePose, parts.Inertial], ...] = ()
     name: str = ""
 
     @property
@@ -64,14 +64,14 @@ class Link(Struct, frozen=True):
         return COORDINATES.get(self.dof.kind, 1)
 
 
-class Tree(Struct, frozen=True, dict=True):
+class LinkTree(Struct, frozen=True, dict=True):
     """The links of a mechanism, parents before children; ``bodies`` by id the link that each is part of, and its pose in it."""
 
     name: str
     links: tuple[Link, ...]
     nq: int
     nv: int
-    bodies: Mapping[Id, tuple[int, Frame]]
+    bodies: Mapping[Id, tuple[int, FramePose]]
 
     @cached_property
     def places(self) -> Mapping[tuple[Id, int], int]:
@@ -89,10 +89,10 @@ def reference(link: Link) -> tuple[float, ...]:
     return (link.dof.ref,) if link.coordinates == 1 else (*[0.0] * (link.coordinates - 4), 1.0, 0.0, 0.0, 0.0)
 
 
-def frame_of(pose: Pose) -> Frame:
+def frame_of(pose: Pose) -> FramePose:
     """A pose as a frame; entries that are 0, 1 or -1 but for rounding are so exactly."""
     rotation = [[_clean(value) for value in row] for row in matrix_from_quat(pose.quat)]
-    return Frame(rotation, list(pose.xyz))
+    return FramePose(rotation, list(pose.xyz))
 
 
 def _clean(value: float) -> float:
@@ -100,7 +100,7 @@ def _clean(value: float) -> float:
     return near + 0.0 if abs(value - near) < _ROUNDING else value
 
 
-def tree_of(mechanism: Mechanism, *, base: str | None = None) -> Tree:
+def tree_of(mechanism: Mechanism, *, base: str | None = None) -> LinkTree:
     """The tree of a mechanism; ``base`` is what becomes of roots without a joint: fixed (None too) or free.
 
     Raises: Refusal (HX400) when no joint moves, HX404 for a dof that moves no mass at all.
@@ -128,12 +128,12 @@ def tree_of(mechanism: Mechanism, *, base: str | None = None) -> Tree:
     named = zip(links, _names(links), strict=True)
     whole = tuple(replace(link, bodies=_inertials(mechanism, own.get(at, [])), name=name) for at, (link, name) in enumerate(named))
     bodies = {body: (link, frame_of(place)) for body, (link, place) in placed.items()}
-    tree = Tree(mechanism.name, whole, nq, nv, bodies)
+    tree = LinkTree(mechanism.name, whole, nq, nv, bodies)
     _refuse_massless(mechanism, tree)
     return tree
 
 
-def _inertials(mechanism: Mechanism, bodies: list[tuple[Id, Pose]]) -> tuple[tuple[Frame, parts.Inertial], ...]:
+def _inertials(mechanism: Mechanism, bodies: list[tuple[Id, Pose]]) -> tuple[tuple[FramePose, parts.Inertial], ...]:
     found = []
     for body, place in bodies:
         part = mechanism.graph.vertices[body]
@@ -142,7 +142,7 @@ def _inertials(mechanism: Mechanism, bodies: list[tuple[Id, Pose]]) -> tuple[tup
     return tuple(found)
 
 
-def _refuse_massless(mechanism: Mechanism, tree: Tree) -> None:
+def _refuse_massless(mechanism: Mechanism, tree: LinkTree) -> None:
     """A dof without armature that moves neither mass nor tensor has no equation of motion."""
     moved = [any(_weighs(inertial) for _, inertial in link.bodies) for link in tree.links]
     for number in reversed(range(len(moved))):

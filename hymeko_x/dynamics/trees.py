@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.dynamics.couplings import Expanded, Follower, expanded, independent
+from hymeko_x.dynamics.couplings import Follower, TreeMotion, expanded, independent
 from hymeko_x.dynamics.drives import Motor, drive, remembering, signals_of, state_rates
 from hymeko_x.dynamics.loops import STABILISATION, Closing, Closure, closed_acceleration, closing
 from hymeko_x.dynamics.numbers import add, dot, factorize, floats, graphs, solve, symbols
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
-    from hymeko_x.dynamics.tree import Link, Tree
+    from hymeko_x.dynamics.tree import Link, LinkTree
     from hymeko_x.ir.mechanism import Mechanism
 
     Floats = NDArray[np.floating[Any]]
 
 
-class Formulas(NamedTuple):
+class TreeFormulas(NamedTuple):
     """M(q), the bias C(q, v) v + g(q), g(q), the forces of springs, dampers and friction, and those of actuators, as sympy matrices.
 
     They are in the symbols q1, q2, ... and v1, v2, ..., the controls u1, u2, ... and states a1, a2, ... of actuators.
@@ -59,7 +59,7 @@ class Trees(Struct, frozen=True, dict=True):
     """
 
     mechanism: Mechanism
-    tree: Tree
+    tree: LinkTree
     followers: tuple[Follower, ...] = ()
     gravity: tuple[float, float, float] = GRAVITY
     closures: tuple[Closure, ...] = ()
@@ -157,7 +157,7 @@ class Trees(Struct, frozen=True, dict=True):
 
         return System(self.tree.name, tuple(states), inputs, outputs, (), rates, measured)
 
-    def symbolic(self) -> Formulas:
+    def symbolic(self) -> TreeFormulas:
         """The equations of motion of the independent coordinates as formulas, numbers as fractions. For a handful of dofs."""
         import sympy
 
@@ -169,7 +169,7 @@ class Trees(Struct, frozen=True, dict=True):
         forces = [bias, inverse_dynamics(constants, still.q, still.v), passive_forces(constants, self.cables, whole.q, whole.v)]
         forces.append(self._driving(constants, whole))
         rows = [reduced(mass, whole), *[[[dot(column, force)] for column in zip(*whole.ratios, strict=True)] for force in forces]]
-        return Formulas(q, v, *(sympy.Matrix(found).applyfunc(sympy.trigsimp) for found in rows))
+        return TreeFormulas(q, v, *(sympy.Matrix(found).applyfunc(sympy.trigsimp) for found in rows))
 
     def _symbols(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
         """The symbols q1, q2, ... and v1, v2, ... of the independent coordinates."""
@@ -179,7 +179,7 @@ class Trees(Struct, frozen=True, dict=True):
         q = sympy.symbols(f"q1:{1 + sum(link.coordinates for link in links)}", real=True)
         return q, sympy.symbols(f"v1:{1 + sum(link.velocities for link in links)}", real=True)
 
-    def _driving(self, constants: Constants, whole: Expanded) -> list[Number]:
+    def _driving(self, constants: Constants, whole: TreeMotion) -> list[Number]:
         """What actuators do under the controls u1, u2, ... with their states a1, a2, ...; zero where the inputs are forces."""
         import sympy
 
@@ -308,7 +308,7 @@ def _rates(found: Trees) -> Callable[[Sequence[Number], Sequence[Number], Sequen
 
 
 def reduced_acceleration(
-    constants: Constants, whole: Expanded, tau: list[Number], closures: Sequence[Closure], rate: Sequence[Number]
+    constants: Constants, whole: TreeMotion, tau: list[Number], closures: Sequence[Closure], rate: Sequence[Number]
 ) -> list[Number]:
     """The accelerations z'' of the independent coordinates with the velocities ``rate``: G' M G z'' = G' (tau - bias - M drift),
     and the forces of closed loops."""
@@ -322,7 +322,7 @@ def reduced_acceleration(
     return closed_acceleration(inertia, own, reduced_closing(closures, constants, whole), rate, STABILISATION)
 
 
-def reduced_closing(closures: Sequence[Closure], constants: Constants, whole: Expanded) -> Closing:
+def reduced_closing(closures: Sequence[Closure], constants: Constants, whole: TreeMotion) -> Closing:
     """The closures over the independent coordinates: J G, and J' v + J drift."""
     closed = closing(closures, constants, whole.q, whole.v)
     columns = list(zip(*whole.ratios, strict=True))
@@ -332,7 +332,7 @@ def reduced_closing(closures: Sequence[Closure], constants: Constants, whole: Ex
     return Closing(closed.gap, slope, [add(d, dot(row, whole.drift)) for d, row in zip(closed.drift, closed.slope, strict=True)])
 
 
-def reduced(matrix: Matrix, whole: Expanded) -> Matrix:
+def reduced(matrix: Matrix, whole: TreeMotion) -> Matrix:
     """G' A G of a matrix A over all coordinates: over the independent ones."""
     columns = list(zip(*whole.ratios, strict=True))
     if len(columns) == len(matrix):

@@ -177,7 +177,7 @@ class Conversion:
 
     def _first(self) -> Guess:
         """How the first conversion may have been made."""
-        place = pipeline.Place(self.folder, package=disk.package_uri(self.folder))
+        place = pipeline.OutputPlace(self.folder, package=disk.package_uri(self.folder))
         guess = best_guess(self._guess(self.options, place), self.edited, self.format, self._guess)
         if found := guess.given(self.options):
             self.report.note(codes.OPTIONS_FOUND, f"the file was converted with {' '.join(found)}, as far as can be seen")
@@ -297,18 +297,18 @@ class Conversion:
         """In how much the edited file differs from an image, apart from names."""
         return len(diff(image, self._under(self._renames(image), self.edited, image), TOLERANCE))
 
-    def _under(self, names: Names, edited: Mechanism, image: Mechanism) -> Mechanism:
+    def _under(self, names: Renames, edited: Mechanism, image: Mechanism) -> Mechanism:
         """The edited robot under the names of the image, and the shapes of each body under the ids that they have there."""
         named = with_old_names(edited, names.every)
         return rename(named, reordered_shapes(named, image))
 
-    def _renames(self, image: Mechanism) -> Names:
+    def _renames(self, image: Mechanism) -> Renames:
         """The other names that elements have in the edited file, as far as the elements around them tell."""
         pairs = {new: old for new, old in other_names(self.edited, image).items() if new.kind == old.kind}
         made = {new: old for new, old in pairs.items() if self._is_unnamed(new, old, image)}
         made_names = {(new.name, old.name) for new, old in made.items()}
         made |= {new: old for new, old in pairs.items() if old.kind in _PLACING and (new.name, old.name) in made_names}
-        return Names({new: old for new, old in pairs.items() if old.kind in NAMED and new not in made}, made)
+        return Renames({new: old for new, old in pairs.items() if old.kind in NAMED and new not in made}, made)
 
     def _is_unnamed(self, new: Id, old: Id, image: Mechanism) -> bool:
         """Whether an element has no name in any of the three files: a contact, one that says so, an actuator or a frame that is made."""
@@ -333,11 +333,11 @@ class Conversion:
         complete = pipeline.completed(self.edited, self.home, self.files, Report()).graph.vertices
         return shorten_computed(self.edited.replace(vertices={key: complete[key] for key in bare}), self.edited)
 
-    def _guess(self, options: Options, place: pipeline.Place) -> Guess:
+    def _guess(self, options: Options, place: pipeline.OutputPlace) -> Guess:
         guess = self._converted(options, place)
         return guess._replace(distance=self._distance(guess.image))
 
-    def _converted(self, options: Options, place: pipeline.Place) -> Guess:
+    def _converted(self, options: Options, place: pipeline.OutputPlace) -> Guess:
         """ORIGINAL as the format has it, in the container that is fastest. Raises: as :func:`hymeko_x.pipeline.write`."""
         format = formats.by_name(self.format.fast_container or self.format.name)
         package = pipeline.write(self.mechanism, format, options, self.source.files, Report(), place)
@@ -351,7 +351,7 @@ def _is_beside(new: Id, old: Id) -> bool:
     return old.kind in _LIKE_LINKS and new.name.removesuffix(mark) == old.name.removesuffix(mark)
 
 
-class Names(NamedTuple):
+class Renames(NamedTuple):
     """The old ids of renamed elements by their new ones: where people give names, and where formats make them from other names."""
 
     given: dict[Id, Id]

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def copied(
-    source: Source, format: Format, mechanism: Mechanism, place: pipeline.Place, report: Report, *, kept: str = ""
+    source: Source, format: Format, mechanism: Mechanism, place: pipeline.OutputPlace, report: Report, *, kept: str = ""
 ) -> Package | None:
     """The package with the source's own text, for an output in another place; None where only a new text would be the same robot there.
 

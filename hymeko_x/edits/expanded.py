@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from hymeko_x.edits.splicing import Lines
+from hymeko_x.edits.splicing import ByteLines
 
 if TYPE_CHECKING:
     from hymeko_x.edits.matching import Named
     from hymeko_x.ir.mechanism import Mechanism
-    from hymeko_x.outline import Block, Outline
+    from hymeko_x.outline import Outline, OutlineBlock
 
 
 def written_blocks(own: Outline, mechanism: Mechanism) -> Named:
@@ -24,8 +24,8 @@ def written_blocks(own: Outline, mechanism: Mechanism) -> Named:
         origin = mechanism.origin(key)
         if key.kind in ("body", "joint") and origin is not None and origin.line is not None:
             made[origin.file, origin.line].append(key.name)
-    lines = {name: Lines(file.data) for name, file in own.files.items()}
-    found: dict[tuple[str, str], list[Block]] = defaultdict(list)
+    lines = {name: ByteLines(file.data) for name, file in own.files.items()}
+    found: dict[tuple[str, str], list[OutlineBlock]] = defaultdict(list)
     for block in own.root.walk():
         names = made.get((block.file, lines[block.file].of(block.start)), ()) if block.name else ()
         if len(names) == 1:

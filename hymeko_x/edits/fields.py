@@ -9,14 +9,14 @@ from hymeko_x.edits.matching import value_of
 
 if TYPE_CHECKING:
     from hymeko_x.edits.splicing import Splices
-    from hymeko_x.outline import Block, Field
+    from hymeko_x.outline import OutlineBlock, OutlineField
 
 _AFTER_FIELD = (b" ", b"\t", b"\r", b"\n", b"/", b">")
 _NAME_WITH_EXPRESSION = re.compile(rb"([^\s$]*)(\$\{[^{}]*\}|\$\([^()]*\))([^\s$]*)")
 _WORD = re.compile(rb"[^\s,()\[\]]+")
 
 
-def edit_fields(splices: Splices, own: Block, before: Block, after: Block, print: bytes) -> None:
+def edit_fields(splices: Splices, own: OutlineBlock, before: OutlineBlock, after: OutlineBlock, print: bytes) -> None:
     """Carry the fields over that differ between ``before`` and ``after``; ``print`` are the bytes of ``after``."""
     for name, field in after.fields.items():
         earlier, mine = before.fields.get(name), own.fields.get(name)
@@ -32,7 +32,7 @@ def edit_fields(splices: Splices, own: Block, before: Block, after: Block, print
             splices.put(gone.start, gone.end, b"")
 
 
-def _change(splices: Splices, mine: Field, earlier: Field | None, field: Field, print: bytes) -> None:
+def _change(splices: Splices, mine: OutlineField, earlier: OutlineField | None, field: OutlineField, print: bytes) -> None:
     """Replace a value: where it is a row of words, only those that differ."""
     new = print[field.value_start : field.value_end]
     escape = splices.style.escapes.get(splices.data[mine.value_start - 1 : mine.value_start])
@@ -64,7 +64,7 @@ def _with_expression(written: bytes, had: bytes, wanted: bytes) -> bytes:
     return wanted[: -len(value + after)] + expression + after if wanted.endswith(value + after) else wanted
 
 
-def _add(splices: Splices, own: Block, after: Block, name: str, print: bytes) -> None:
+def _add(splices: Splices, own: OutlineBlock, after: OutlineBlock, name: str, print: bytes) -> None:
     """Write a field that the author does not have behind the one that precedes it in the print."""
     names = [*after.fields]
     before = (own.fields[other] for other in reversed(names[: names.index(name)]) if other in own.fields)

@@ -29,7 +29,7 @@ class Guess(NamedTuple):
     """How the first conversion may have been made, and what it gives."""
 
     options: Options
-    place: pipeline.Place
+    place: pipeline.OutputPlace
     image: Mechanism
     files: Files
     distance: int = 0
@@ -41,7 +41,7 @@ class Guess(NamedTuple):
         return [f"--{name} {value}" for name, value in names.items() if value != given[name]]
 
 
-def best_guess(first: Guess, edited: Mechanism, format: Format, again: Callable[[Options, pipeline.Place], Guess]) -> Guess:
+def best_guess(first: Guess, edited: Mechanism, format: Format, again: Callable[[Options, pipeline.OutputPlace], Guess]) -> Guess:
     """The guess with the fewest differences, one option after the other; only those that may explain some are tried."""
     best = first
     for others in (_other_files, _other_folders, _other_bases, _other_actuators, _other_targets):
@@ -51,7 +51,7 @@ def best_guess(first: Guess, edited: Mechanism, format: Format, again: Callable[
     return best
 
 
-def _other_files(guess: Guess, edited: Mechanism, format: Format) -> Iterator[tuple[Options, pipeline.Place]]:
+def _other_files(guess: Guess, edited: Mechanism, format: Format) -> Iterator[tuple[Options, pipeline.OutputPlace]]:
     """Where files are called otherwise: they may be beside the output, or where they are."""
     if _other_paths(guess, edited):
         yield from (
@@ -59,7 +59,7 @@ def _other_files(guess: Guess, edited: Mechanism, format: Format) -> Iterator[tu
         )
 
 
-def _other_folders(guess: Guess, edited: Mechanism, _: Format) -> Iterator[tuple[Options, pipeline.Place]]:
+def _other_folders(guess: Guess, edited: Mechanism, _: Format) -> Iterator[tuple[Options, pipeline.OutputPlace]]:
     """Where files are still called otherwise: they may be in a folder of the output's name."""
     if paths := _other_paths(guess, edited):
         yield replace(guess.options, within=f"{paths[0].partition('/')[0]}/"), replace(guess.place, assets="copy")
@@ -71,14 +71,14 @@ def _other_paths(guess: Guess, edited: Mechanism) -> list[str]:
     return sorted(theirs - mine)
 
 
-def _other_bases(guess: Guess, edited: Mechanism, _: Format) -> Iterator[tuple[Options, pipeline.Place]]:
+def _other_bases(guess: Guess, edited: Mechanism, _: Format) -> Iterator[tuple[Options, pipeline.OutputPlace]]:
     """Where a body is joined to the world in one of the two only, which may be a body by that name."""
     mine, theirs = ([(view.child, view.joint.dofs) for view in _on_world(robot)] for robot in (guess.image, edited))
     if guess.options.base is None and mine != theirs:
         yield from ((replace(guess.options, base=base), guess.place) for base in _BASES)
 
 
-def _other_actuators(guess: Guess, edited: Mechanism, _: Format) -> Iterator[tuple[Options, pipeline.Place]]:
+def _other_actuators(guess: Guess, edited: Mechanism, _: Format) -> Iterator[tuple[Options, pipeline.OutputPlace]]:
     """Where one of the two has actuators that the other one does not have."""
     mine, theirs = ({(key, part.kind) for key, part in robot.vertices(Actuator)} for robot in (guess.image, edited))
     if guess.options.actuators is None and mine != theirs:
@@ -86,7 +86,7 @@ def _other_actuators(guess: Guess, edited: Mechanism, _: Format) -> Iterator[tup
         yield from ((replace(guess.options, actuators=kind), guess.place) for kind in kinds)
 
 
-def _other_targets(guess: Guess, _: Mechanism, format: Format) -> Iterator[tuple[Options, pipeline.Place]]:
+def _other_targets(guess: Guess, _: Mechanism, format: Format) -> Iterator[tuple[Options, pipeline.OutputPlace]]:
     """Where the two differ in anything. Of targets with the same rules one tells as much as all of them."""
     if guess.options.target is None and guess.distance:
         of_rules = {(target.rules, *target.defaults.items()): target for target in reversed(targets.of_format(format))}

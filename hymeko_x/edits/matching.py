@@ -13,18 +13,18 @@ from hymeko_x.xml.tree import read_numbers
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable
 
-    from hymeko_x.outline import Block
+    from hymeko_x.outline import OutlineBlock
 
-Pairs = dict["Block", "Block"]
+Pairs = dict["OutlineBlock", "OutlineBlock"]
 """The block of the other outline, for each block that it has."""
 
 
-Named = Mapping[tuple[str, str], "Block"]
+Named = Mapping[tuple[str, str], "OutlineBlock"]
 """Blocks by their tags, and names that they may have in another way."""
 NO_NAMES: Named = MappingProxyType({})
 
 
-def match(first: Block, second: Block, written: Named = NO_NAMES) -> Pairs:
+def match(first: OutlineBlock, second: OutlineBlock, written: Named = NO_NAMES) -> Pairs:
     """The blocks of ``second`` by those of ``first`` that they are. Linear but for sorting.
 
     ``written`` are blocks of ``second`` by what the outermost ones of ``first`` are called; these are matched at first.
@@ -46,14 +46,14 @@ def match(first: Block, second: Block, written: Named = NO_NAMES) -> Pairs:
 class _Matching:
     """The pairs so far, and those whose inner blocks have not been looked at."""
 
-    def __init__(self, first: Block, second: Block) -> None:
+    def __init__(self, first: OutlineBlock, second: OutlineBlock) -> None:
         self.pairs: Pairs = {}
-        self.taken: set[Block] = set()
+        self.taken: set[OutlineBlock] = set()
         self._contents = {**_contents(first), **_contents(second)}
-        self._waiting: list[tuple[Block, Block]] = []
-        self._open: list[tuple[Block, Block]] = []
+        self._waiting: list[tuple[OutlineBlock, OutlineBlock]] = []
+        self._open: list[tuple[OutlineBlock, OutlineBlock]] = []
 
-    def pair(self, first: Block, second: Block) -> None:
+    def pair(self, first: OutlineBlock, second: OutlineBlock) -> None:
         """They are the same from now on."""
         self.pairs[first] = second
         self.taken.add(second)
@@ -66,7 +66,7 @@ class _Matching:
             self._open.append((first, second))
             self._match(first, second, lambda block: (block.tag, block.name) if block.name else None)
 
-    def match_moved(self, first: Block, second: Block) -> None:
+    def match_moved(self, first: OutlineBlock, second: OutlineBlock) -> None:
         """Match blocks with a name that is unique in both, wherever they stand."""
         mine, theirs = (_unique(block for block in root.walk() if not self._is_matched(block)) for root in (first, second))
         for key, block in mine.items():
@@ -85,10 +85,10 @@ class _Matching:
             self._match_in_order(first, second)
             self.descend()
 
-    def _match_in_order(self, first: Block, second: Block) -> None:
+    def _match_in_order(self, first: OutlineBlock, second: OutlineBlock) -> None:
         """Match what has the same tag and, if it has another name, something in common."""
         self._match(first, second, lambda block: None if block.name else block.tag)
-        waiting: dict[str, list[Block]] = defaultdict(list)
+        waiting: dict[str, list[OutlineBlock]] = defaultdict(list)
         for other in reversed(self._inside(first, second)):
             if other not in self.taken:
                 waiting[other.tag].append(other)
@@ -97,7 +97,7 @@ class _Matching:
             if block not in self.pairs and row and self._are_alike(block, row[-1]):
                 self.pair(block, row.pop())
 
-    def _are_alike(self, block: Block, other: Block) -> bool:
+    def _are_alike(self, block: OutlineBlock, other: OutlineBlock) -> bool:
         """Whether two blocks have no two names, or a field or an inner block in common."""
         if not (block.name and other.name):
             return True
@@ -107,7 +107,7 @@ class _Matching:
         inner = {self._contents[child].named for child in block.children}
         return any(self._contents[child].named in inner for child in other.children)
 
-    def _match_by_children(self, first: Block) -> None:
+    def _match_by_children(self, first: OutlineBlock) -> None:
         """Match what has a child that is matched already, in whichever of several blocks of one tag it stands."""
         for block in first.children:
             if block in self.pairs:
@@ -117,7 +117,7 @@ class _Matching:
             if other is not None and other not in self.taken:
                 self.pair(block, other)
 
-    def _inside(self, first: Block, second: Block) -> list[Block]:
+    def _inside(self, first: OutlineBlock, second: OutlineBlock) -> list[OutlineBlock]:
         """What is in a block; and in those after it that are one with it in the other text: bare ones of its tag, such as <actuator>."""
         if second.parent is None or not _is_bare(second) or first.parent is None:
             return second.children
@@ -126,11 +126,11 @@ class _Matching:
             return second.children
         return [child for block in theirs for child in block.children]
 
-    def _is_matched(self, block: Block) -> bool:
+    def _is_matched(self, block: OutlineBlock) -> bool:
         return block in self.pairs or block in self.taken
 
-    def _match(self, first: Block, second: Block, key: Callable[[Block], Hashable]) -> None:
-        waiting: dict[Hashable, list[Block]] = defaultdict(list)
+    def _match(self, first: OutlineBlock, second: OutlineBlock, key: Callable[[OutlineBlock], Hashable]) -> None:
+        waiting: dict[Hashable, list[OutlineBlock]] = defaultdict(list)
         for block in reversed(self._inside(first, second)):
             if block not in self.taken:
                 waiting[key(block)].append(block)
@@ -142,14 +142,14 @@ class _Matching:
                 self.pair(block, found.pop())
 
 
-def _is_bare(block: Block) -> bool:
+def _is_bare(block: OutlineBlock) -> bool:
     """Whether a block is a group alone, without a name or a field."""
     return not (block.name or block.fields)
 
 
-def _unique(blocks: Iterable[Block]) -> dict[tuple[str, str], Block]:
+def _unique(blocks: Iterable[OutlineBlock]) -> dict[tuple[str, str], OutlineBlock]:
     """The blocks by tag and name, as far as no other one has both."""
-    found: dict[tuple[str, str], list[Block]] = defaultdict(list)
+    found: dict[tuple[str, str], list[OutlineBlock]] = defaultdict(list)
     for block in blocks:
         if block.name:
             found[block.tag, block.name].append(block)
@@ -166,9 +166,9 @@ class _Content(NamedTuple):
 _KEYS = (attrgetter("named"), attrgetter("nameless"))
 
 
-def _contents(root: Block) -> dict[Block, _Content]:
+def _contents(root: OutlineBlock) -> dict[OutlineBlock, _Content]:
     """A hash of each block's content: its tag, its fields, and what is in it, with numbers as numbers."""
-    hashes: dict[Block, _Content] = {}
+    hashes: dict[OutlineBlock, _Content] = {}
     for block in reversed(list(root.walk())):
         fields = sorted((name, value_of(field.text)) for name, field in block.fields.items() if field.text != block.name)
         nameless = hash((block.tag, tuple(fields), tuple(hashes[child].named for child in block.children)))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Set
 
     from hymeko_x.edits.matching import Named, Pairs
-    from hymeko_x.outline import Block, Outline
+    from hymeko_x.outline import Outline, OutlineBlock
 
 
 def merged(own: Outline, before: Outline, after: Outline, replaced: Set[int] = frozenset(), written: Named = NO_NAMES) -> dict[str, bytes]:
@@ -53,32 +53,32 @@ class _Merge:
             block: place for block in after.root.walk() if (place := self._place(block)) is not None and block not in self.replaced
         }
         self.moved = {block for block in self.kept if self._is_moved(block)}
-        self.texts: dict[Block, bytes] = {}
+        self.texts: dict[OutlineBlock, bytes] = {}
 
-    def _place(self, block: Block) -> Block | None:
+    def _place(self, block: OutlineBlock) -> OutlineBlock | None:
         """The author's block for one of the later print."""
         earlier = self.since.get(block)
         return None if earlier is None else self.mine.get(earlier)
 
-    def _is_changed_name(self, block: Block) -> bool:
+    def _is_changed_name(self, block: OutlineBlock) -> bool:
         """Whether the author has a name alone for a block, and it or a block beside it changed."""
         place = self._place(block)
         if place is None or not place.is_name_alone or block.parent is None:
             return False
         return any(not are_same(other, self.since[other]) for other in block.parent.children if other in self.since)
 
-    def _is_moved(self, block: Block) -> bool:
+    def _is_moved(self, block: OutlineBlock) -> bool:
         """Whether a block stands in another one than before."""
         earlier = self.since[block]
         if block.parent is None or earlier.parent is None:
             return False
         return self.since.get(block.parent) is not earlier.parent or self._is_new(block.parent)
 
-    def _is_put(self, block: Block) -> bool:
+    def _is_put(self, block: OutlineBlock) -> bool:
         """Whether a block's text is put somewhere."""
         return block in self.moved or self._is_new(block)
 
-    def _is_new(self, block: Block) -> bool:
+    def _is_new(self, block: OutlineBlock) -> bool:
         """Whether a block is put in as it is printed: it was not there, or not so and the author does not have it."""
         if block in self.kept:
             return False
@@ -108,7 +108,7 @@ class _Merge:
             if self._is_put(block):
                 self.texts[block] = self._text(block)
 
-    def _text(self, block: Block) -> bytes:
+    def _text(self, block: OutlineBlock) -> bytes:
         """The text of a new or moved block, as it would stand at the margin."""
         place = self.kept.get(block)
         if place is not None:
@@ -121,7 +121,7 @@ class _Merge:
         line = block.parent if block.parent is not None and block.tag == self.print.style.head_tag else block
         return reindented(splices.within(block), self.print.indent(line) or b"", self.print_unit, b"", self.unit, b"\n")
 
-    def _moved_in(self, block: Block) -> Iterator[Block]:
+    def _moved_in(self, block: OutlineBlock) -> Iterator[OutlineBlock]:
         """The outermost blocks in a new one that the author has already."""
         stack = [*block.children]
         while stack:
@@ -133,7 +133,7 @@ class _Merge:
 
     # ---- places ------------------------------------------------------------------------------------------------------------------
 
-    def _fill(self, block: Block, around: Block) -> None:
+    def _fill(self, block: OutlineBlock, around: OutlineBlock) -> None:
         """Put the new and the moved blocks of a kept one in: beside their siblings, or at the end of the content."""
         inside: list[bytes] = []
         for child in block.children:
@@ -159,7 +159,7 @@ class _Merge:
     def _at(self, text: bytes, splices: Splices, indent: bytes) -> bytes:
         return reindented(text, b"", self.unit, indent, self.unit, splices.newline)
 
-    def _anchor(self, block: Block, around: Block) -> tuple[Block, bool] | None:
+    def _anchor(self, block: OutlineBlock, around: OutlineBlock) -> tuple[OutlineBlock, bool] | None:
         """The author's block beside which a new one is put, and whether behind it: if possible one of its kind, that precedes it."""
         assert block.parent is not None
         row = block.parent.children
@@ -171,12 +171,12 @@ class _Merge:
         after = next((place for other in row[number + 1 :] if (place := self._beside(other, around)) is not None), None)
         return None if after is None else (after, False)
 
-    def _beside(self, block: Block, around: Block) -> Block | None:
+    def _beside(self, block: OutlineBlock, around: OutlineBlock) -> OutlineBlock | None:
         """The author's block, if it stands in what its print stands in; none for metadata in the head of that."""
         place = None if block in self.moved or block.tag == self.own.style.head_tag else self.kept.get(block)
         return place if place is not None and place.parent is not None and place.parent.tag == around.tag else None
 
-    def _insert_beside(self, text: bytes, place: Block, behind: bool) -> None:
+    def _insert_beside(self, text: bytes, place: OutlineBlock, behind: bool) -> None:
         splices = self.splices[place.file]
         indent, end = splices.indent(place), splices.end_of_line(place.end)
         if indent is None or end is None:
@@ -189,7 +189,7 @@ class _Merge:
             start = place.start - len(indent)
             splices.put(start, start, indent + self._at(text, splices, indent) + splices.newline)
 
-    def _insert_inside(self, texts: list[bytes], around: Block) -> None:
+    def _insert_inside(self, texts: list[bytes], around: OutlineBlock) -> None:
         """Put texts at the end of a block's content, which may have to be opened."""
         splices = self.splices[around.file]
         outer = splices.indent(around) or b""
@@ -204,12 +204,12 @@ class _Merge:
         splices.put(at, end, lines)
 
 
-def _behind_head(block: Block) -> int | None:
+def _behind_head(block: OutlineBlock) -> int | None:
     """Where the fields in the head of a block end; None where it has none there."""
     return max((field.end for field in block.fields.values() if field.end <= block.head), default=None)
 
 
-def are_same(block: Block, other: Block) -> bool:
+def are_same(block: OutlineBlock, other: OutlineBlock) -> bool:
     """Whether two blocks of prints have the same text, but for its place."""
     stack = [(block, other)]
     while stack:

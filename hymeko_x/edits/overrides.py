@@ -14,9 +14,9 @@ from hymeko_x.edits.splicing import Splices
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Mapping
 
-    from hymeko_x.outline import Block, Outline
+    from hymeko_x.outline import Outline, OutlineBlock
 
-    Blocks = Mapping[tuple[str, str], Block]
+    Blocks = Mapping[tuple[str, str], OutlineBlock]
 
 _FIELD = re.compile(r"[^\W\d]\w*")
 _INNER, _OUTER = "-", "+"
@@ -44,13 +44,13 @@ def _instance_of(name: str, instances: Container[str]) -> str | None:
     return next((found for number in range(len(parts) - 1, 0, -1) if (found := "_".join(parts[:number])) in instances), None)
 
 
-def _top(outline: Outline) -> Iterator[Block]:
+def _top(outline: Outline) -> Iterator[OutlineBlock]:
     """The blocks in the outermost ones: the elements of the robot."""
     for block in outline.root.children:
         yield from block.children
 
 
-def _override(splices: Splices, before: Block, block: Block, instance: str, authored: Blocks) -> None:
+def _override(splices: Splices, before: OutlineBlock, block: OutlineBlock, instance: str, authored: Blocks) -> None:
     """Replace the block of an element of an instance by what would stand in the author's text for it, if anything."""
     rest = block.name.removeprefix(f"{instance}_")
     reference = f"{block.tag}{instance}.{rest}"
@@ -65,7 +65,7 @@ def _override(splices: Splices, before: Block, block: Block, instance: str, auth
         splices.remove(block)
 
 
-def _is_placement(block: Block, instance: str) -> bool:
+def _is_placement(block: OutlineBlock, instance: str) -> bool:
     """Whether a block is the joint that puts the root of an instance in its place; its child may follow from its name."""
     inner, outer = (block.fields.get(name) for name in (_INNER, _OUTER))
     if not block.tag or outer is None or f"+ {instance}_" in outer.text:
@@ -73,12 +73,12 @@ def _is_placement(block: Block, instance: str) -> bool:
     return inner is None or f"- {instance}_" in inner.text
 
 
-def _changes(splices: Splices, before: Block, after: Block) -> str:
+def _changes(splices: Splices, before: OutlineBlock, after: OutlineBlock) -> str:
     """The fields of a block that have another value now; its arcs stay what they are in an imported robot."""
     fields = [field for name, field in after.fields.items() if _is_changed(name, before, after)]
     return " ".join(splices.data[field.start : field.end].decode().strip() for field in fields)
 
 
-def _is_changed(name: str, before: Block, after: Block) -> bool:
+def _is_changed(name: str, before: OutlineBlock, after: OutlineBlock) -> bool:
     old = before.fields.get(name)
     return _FIELD.fullmatch(name) is not None and (old is None or old.text != after.fields[name].text)

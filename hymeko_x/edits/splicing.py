@@ -12,7 +12,7 @@ from msgspec import Struct, field
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from hymeko_x.outline import Block, Style
+    from hymeko_x.outline import BlockStyle, OutlineBlock
 
 _BLANKS = re.compile(rb"[ \t]*")
 _EMPTY_LINE = re.compile(rb"\n[ \t]*\r?\n")
@@ -31,7 +31,7 @@ class Splices(Struct):
     """The edits of one file so far."""
 
     data: bytes
-    style: Style
+    style: BlockStyle
     edits: list[Edit] = field(default_factory=list)
 
     def put(self, start: int, end: int, text: bytes) -> None:
@@ -42,7 +42,7 @@ class Splices(Struct):
         """The whole file with its edits. An edit inside of another one's bytes is left out."""
         return self._spliced(0, len(self.data), sorted(self.edits))
 
-    def within(self, block: Block) -> bytes:
+    def within(self, block: OutlineBlock) -> bytes:
         """The text of a block with the edits inside of it."""
         inner = [edit for edit in self.edits if block.start < edit.start and edit.end < block.end]
         return self._spliced(block.start, block.end, sorted(inner))
@@ -63,7 +63,7 @@ class Splices(Struct):
         """How lines end in the file."""
         return b"\r\n" if b"\r\n" in self.data else b"\n"
 
-    def indent(self, block: Block) -> bytes | None:
+    def indent(self, block: OutlineBlock) -> bytes | None:
         """The blanks before a block that is the first thing on its line; None where something else is."""
         line = self.data.rfind(b"\n", 0, block.start) + 1
         before = self.data[line : block.start]
@@ -75,14 +75,14 @@ class Splices(Struct):
         end = place if found is None else found.end()
         return end if self.data[end : end + 1] in (b"\n", b"\r", b"") else None
 
-    def stands_apart(self, block: Block) -> bool:
+    def stands_apart(self, block: OutlineBlock) -> bool:
         """Whether empty lines are between a block and those before and behind it in the same one."""
         row = [] if block.parent is None else [other for other in block.parent.children if other.tag != self.style.head_tag]
         at = row.index(block) if block in row else 0
         pairs = list(pairwise(row[max(at - 1, 0) : at + 2]))
         return bool(pairs) and all(_EMPTY_LINE.search(self.data, before.end, after.start) for before, after in pairs)
 
-    def remove(self, block: Block) -> None:
+    def remove(self, block: OutlineBlock) -> None:
         """Take a block out, with its lines where it has them for itself."""
         indent = self.indent(block)
         end = _BLANKS.match(self.data, block.end).end()  # type: ignore[union-attr]
@@ -93,7 +93,7 @@ class Splices(Struct):
         self.put(block.start - len(indent), len(self.data) if after < 0 else after + 1, b"")
 
 
-def unit_of(data: bytes, blocks: Iterable[Block]) -> bytes:
+def unit_of(data: bytes, blocks: Iterable[OutlineBlock]) -> bytes:
     """By how much the text indents what is inside of something: the difference that is most frequent."""
     counts: dict[bytes, int] = {}
     for block in blocks:
@@ -132,7 +132,7 @@ def _deeper(inner: bytes, old_unit: bytes, unit: bytes) -> bytes:
     return unit * count + inner[len(inner) - left :]
 
 
-class Lines:
+class ByteLines:
     """The lines of places in a text, of which many are asked for."""
 
     def __init__(self, data: bytes) -> None:

@@ -17,7 +17,7 @@ from hymeko_x.diagnostics import Origin, Refusal, Report, listed
 from hymeko_x.edits.expanded import written_blocks
 from hymeko_x.edits.merging import merged
 from hymeko_x.edits.overrides import with_overrides
-from hymeko_x.edits.splicing import Lines
+from hymeko_x.edits.splicing import ByteLines
 from hymeko_x.ir.names import rename
 from hymeko_x.residue.pairing import other_names, reordered_shapes
 from hymeko_x.rewrite import Options, legalize
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism
-    from hymeko_x.outline import Block, Outline
+    from hymeko_x.outline import Outline, OutlineBlock
     from hymeko_x.source import Files, Package
 
 _MOST_TRIES = 3
@@ -116,7 +116,7 @@ def text_with_edits(source: Source, format: Format, before: Mechanism, after: Me
     """
     attempt = _Attempt(source, format, before, after, report)
     companion = _companion_with_edits(source, format, before, after)
-    replaced: dict[Block, Id] = {}
+    replaced: dict[OutlineBlock, Id] = {}
     for _ in range(_MOST_TRIES):
         files = attempt.files(replaced)
         wrong = attempt.wrong(files)
@@ -179,7 +179,7 @@ class _Attempt:
         names = {old: new for new, old in other_names(after, before).items()}
         self.unprinted = {(names.get(edit.element, edit.element), edit.field) for edit in diff(before, image, TOLERANCE)}
 
-    def files(self, replaced: Mapping[Block, Id]) -> dict[str, bytes]:
+    def files(self, replaced: Mapping[OutlineBlock, Id]) -> dict[str, bytes]:
         """The files that change."""
         places = {block.start for block in replaced}
         return {self.own.files[name].path: data for name, data in merged(self.own, self.before, self.after, places, self.written).items()}
@@ -206,13 +206,13 @@ class _Attempt:
         is_comment = difference.field.startswith(f"{COMMENT} ")
         return not is_comment and (difference.element, difference.field) not in self.unprinted
 
-    def blocks_of(self, elements: Iterable[Id]) -> dict[Block, Id] | None:
+    def blocks_of(self, elements: Iterable[Id]) -> dict[OutlineBlock, Id] | None:
         """The blocks of the later print that elements stand in; None where one has none."""
-        lines = Lines(self.after.files[self.after.main].data)
-        starts: dict[int, Block] = {}
+        lines = ByteLines(self.after.files[self.after.main].data)
+        starts: dict[int, OutlineBlock] = {}
         for block in self.after.root.walk():
             starts.setdefault(lines.of(block.start), block)
-        found: dict[Block, Id] = {}
+        found: dict[OutlineBlock, Id] = {}
         for key in elements:
             block = next((starts[line] for line in self._lines(key) if line in starts), None)
             if block is None or block.parent is None:

@@ -2,7 +2,7 @@
 
 Works on any tree of tags and texts, so that one pass serves every backend. A backend
 
-1. hands in its own text as forms (:class:`~hymeko_x.factor.forms.Element`: tag, leaves, children) and a
+1. hands in its own text as forms (:class:`~hymeko_x.factor.forms.FormElement`: tag, leaves, children) and a
    :class:`~hymeko_x.factor.forms.Dialect`:
    the costs of definitions, calls and holes in its text, in characters;
 2. gets back :class:`~hymeko_x.factor.forms.Factored`: macros with parameters and defaults, named values, and the items with calls

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.factor.find import is_usual
 from hymeko_x.factor.flat import every_form, to_items
-from hymeko_x.factor.forms import Call, Element, Factored, Hole, Macro, Parameter, Value, joined
+from hymeko_x.factor.forms import Call, Factored, FormElement, Hole, Macro, MacroParameter, Value, joined
 from hymeko_x.factor.macros import free_name, identifier
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from hymeko_x.factor.flat import Form, OpenMacro, Workspace
+    from hymeko_x.factor.flat import FactoringState, Form, OpenMacro
     from hymeko_x.factor.forms import Dialect, Item, Piece, Text
 
 
-def finish(workspace: Workspace, dialect: Dialect) -> Factored:
+def finish(workspace: FactoringState, dialect: Dialect) -> Factored:
     """The result: calls without arguments that are defaults, macros before those that call them."""
     lists = workspace.lists
     called: dict[str, list[Form]] = {name: [] for name in workspace.macros}
@@ -30,7 +30,7 @@ def finish(workspace: Workspace, dialect: Dialect) -> Factored:
     return Factored(to_items(workspace.items, calls), tuple(macros))
 
 
-def _parameters(draft: OpenMacro, calls: list[Form], dialect: Dialect) -> tuple[Parameter, ...]:
+def _parameters(draft: OpenMacro, calls: list[Form], dialect: Dialect) -> tuple[MacroParameter, ...]:
     """The parameters, with the most common value as default where half of the calls have it, and that is shorter."""
     found = []
     for place, name in enumerate(draft.parameters):
@@ -39,16 +39,16 @@ def _parameters(draft: OpenMacro, calls: list[Form], dialect: Dialect) -> tuple[
         texts = [(text, uses) for text, uses in usual if dialect.can_be_default(text) and (not text or dialect.has_default(name))]
         best = max(texts, key=lambda item: item[1], default=("", 0))
         saved = best[1] * (dialect.argument + len(name) + len(best[0])) - dialect.default - len(best[0])
-        found.append(Parameter(name, best[0] if best[1] > 1 and saved > 0 else None))
+        found.append(MacroParameter(name, best[0] if best[1] > 1 and saved > 0 else None))
     return tuple(found)
 
 
-def _call(form: Form, parameters: tuple[Parameter, ...]) -> Call:
+def _call(form: Form, parameters: tuple[MacroParameter, ...]) -> Call:
     given = zip(parameters, form.texts, strict=True)
     return Call(form.tag, tuple([(parameter.name, text) for parameter, text in given if text != parameter.default]))
 
 
-def _ordered(workspace: Workspace) -> list[str]:
+def _ordered(workspace: FactoringState) -> list[str]:
     """The names of the macros, each behind those that it calls."""
     needs = {name: {form.tag for form in every_form([draft.body]) if form.is_call} for name, draft in workspace.macros.items()}
     done: dict[str, None] = {}
@@ -136,7 +136,7 @@ def _rewritten(items: tuple[Item, ...], named: Mapping[str, str], dialect: Diale
             work += [(kid, children, None) for kid in reversed(item.children)]
         else:
             leaves = tuple([(name, _with_holes(text, named, dialect)) for name, text in item.leaves])
-            out.append(Element(item.tag, leaves, tuple(children or ()), item.hint))
+            out.append(FormElement(item.tag, leaves, tuple(children or ()), item.hint))
     return tuple(top)
 
 

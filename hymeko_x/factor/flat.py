@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.factor.forms import Call, Element, Hole, Signed
+from hymeko_x.factor.forms import Call, FormElement, Hole, Signed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable, Iterator
@@ -42,7 +42,7 @@ class OpenMacro:
         self.body = body
 
 
-class Workspace:
+class FactoringState:
     """All forms under work: the items at top level, and the macros found so far."""
 
     def __init__(self, items: list[Form]) -> None:
@@ -64,10 +64,10 @@ def every_form(lists: Iterable[list[Form]]) -> Iterator[Form]:
         stack += form.children
 
 
-def to_forms(forms: Iterable[Element]) -> list[Form]:
+def to_forms(forms: Iterable[FormElement]) -> list[Form]:
     """Forms to work on."""
     top: list[Form] = []
-    stack: list[tuple[Element, list[Form]]] = [(form, top) for form in reversed(list(forms))]
+    stack: list[tuple[FormElement, list[Form]]] = [(form, top) for form in reversed(list(forms))]
     while stack:
         form, out = stack.pop()
         names = tuple([name for name, _ in form.leaves])
@@ -76,7 +76,7 @@ def to_forms(forms: Iterable[Element]) -> list[Form]:
         if form.children:
             children: list[Form] = []
             made.children = children
-            stack += [(kid, children) for kid in reversed(form.children) if isinstance(kid, Element)]
+            stack += [(kid, children) for kid in reversed(form.children) if isinstance(kid, FormElement)]
     return top
 
 
@@ -94,14 +94,14 @@ def to_items(forms: list[Form], items_of: dict[int, Call]) -> tuple[Item, ...]:
             work += [(kid, children, None) for kid in reversed(form.children)]
         else:
             leaves = tuple(zip(form.leaves, form.texts, strict=True))
-            out.append(Element(form.tag, leaves, tuple(children or ()), form.hint))
+            out.append(FormElement(form.tag, leaves, tuple(children or ()), form.hint))
     return tuple(top)
 
 
 class Flat:
     """Arrays over all forms, by number. Texts of a run of siblings are one slice of ``texts``."""
 
-    def __init__(self, workspace: Workspace, dialect: Dialect) -> None:
+    def __init__(self, workspace: FactoringState, dialect: Dialect) -> None:
         self._sizes: dict[str, int] = {}
         self._macros = workspace.macros
         self._dialect = dialect

@@ -36,7 +36,7 @@ Text = str | tuple[Piece, ...]
 """A text without holes is a plain string, never a tuple."""
 
 
-class Element(NamedTuple):
+class FormElement(NamedTuple):
     """A form. ``hint`` is the name of the class, macro or template that it was made from, if known."""
 
     tag: str
@@ -52,10 +52,10 @@ class Call(NamedTuple):
     arguments: tuple[tuple[str, Text], ...] = ()
 
 
-Item = Element | Call
+Item = FormElement | Call
 
 
-class Parameter(NamedTuple):
+class MacroParameter(NamedTuple):
     """A parameter of a macro; default None = every call gives it."""
 
     name: str
@@ -66,7 +66,7 @@ class Macro(NamedTuple):
     """A run of forms with holes. Its body may call other macros, never itself."""
 
     name: str
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[MacroParameter, ...]
     body: tuple[Item, ...]
 
 
@@ -85,13 +85,13 @@ class Factored(NamedTuple):
     values: tuple[Value, ...] = ()
 
 
-def expand(factored: Factored) -> tuple[Element, ...]:
+def expand(factored: Factored) -> tuple[FormElement, ...]:
     """The forms that were factored; the exact inverse. Does not recurse."""
     macros = {macro.name: macro for macro in factored.macros}
     known = {value.name: value.text for value in factored.values}
-    done: list[Element] = []
-    work: list[tuple[Item | None, dict[str, str], list[Element]]] = [(item, known, done) for item in reversed(factored.items)]
-    heads: list[tuple[Element, list[Element], list[Element]]] = []
+    done: list[FormElement] = []
+    work: list[tuple[Item | None, dict[str, str], list[FormElement]]] = [(item, known, done) for item in reversed(factored.items)]
+    heads: list[tuple[FormElement, list[FormElement], list[FormElement]]] = []
     while work:
         item, scope, out = work.pop()
         if item is None:
@@ -102,9 +102,9 @@ def expand(factored: Factored) -> tuple[Element, ...]:
             inner = known | _values_of(macro, item, scope)
             work += [(part, inner, out) for part in reversed(macro.body)]
         else:
-            kids: list[Element] = []
+            kids: list[FormElement] = []
             leaves = tuple([(name, fill(text, scope)) for name, text in item.leaves])
-            heads.append((Element(item.tag, leaves, (), item.hint), kids, out))
+            heads.append((FormElement(item.tag, leaves, (), item.hint), kids, out))
             work.append((None, scope, out))
             work += [(part, scope, kids) for part in reversed(item.children)]
     return tuple(done)

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from collections.abc import Container
 
     from hymeko_x.factor.find import Family, Run
-    from hymeko_x.factor.flat import Flat, Workspace
+    from hymeko_x.factor.flat import FactoringState, Flat
     from hymeko_x.factor.forms import Dialect, Text
 
 
-def apply(found: list[Family], flat: Flat, workspace: Workspace, dialect: Dialect) -> bool:
+def apply(found: list[Family], flat: Flat, workspace: FactoringState, dialect: Dialect) -> bool:
     """Make a macro of every family that does not overlap with a better one. Returns whether there was any."""
     taken = _Taken(flat)
     calls: dict[int, Form] = {}
@@ -87,7 +87,7 @@ def _siblings(first: int, last: int, flat: Flat) -> list[Form]:
     return found
 
 
-def _define(family: Family, flat: Flat, workspace: Workspace, dialect: Dialect, calls: dict[int, Form]) -> None:
+def _define(family: Family, flat: Flat, workspace: FactoringState, dialect: Dialect, calls: dict[int, Form]) -> None:
     """Add a family's macro, and note a call for each of its runs at the number of the run's first form."""
     namer = Namer(family, flat, dialect, workspace)
     names = namer.parameters()
@@ -138,7 +138,7 @@ def _body(run: Run, texts: list[Text], flat: Flat) -> list[Form]:
     return top
 
 
-def _replace(workspace: Workspace, flat: Flat, calls: dict[int, Form], gone: set[int]) -> None:
+def _replace(workspace: FactoringState, flat: Flat, calls: dict[int, Form], gone: set[int]) -> None:
     lists = [workspace.items, *(macro.body for macro in workspace.macros.values())]
     lists += [form.children for form in flat.forms if isinstance(form.children, list)]
     for row in lists:
@@ -157,7 +157,7 @@ _FEWEST_OF_LIMB = 3
 class Namer:
     """Names for one family."""
 
-    def __init__(self, family: Family, flat: Flat, dialect: Dialect, workspace: Workspace) -> None:
+    def __init__(self, family: Family, flat: Flat, dialect: Dialect, workspace: FactoringState) -> None:
         self._family = family
         self._dialect = dialect
         self._grown = workspace

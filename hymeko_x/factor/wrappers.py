@@ -10,11 +10,11 @@ from hymeko_x.factor.forms import Hole, Signed, joined
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.factor.flat import Form, OpenMacro, Workspace
+    from hymeko_x.factor.flat import FactoringState, Form, OpenMacro
     from hymeko_x.factor.forms import Dialect, Piece, Text
 
 
-def tidy(workspace: Workspace, dialect: Dialect) -> None:
+def tidy(workspace: FactoringState, dialect: Dialect) -> None:
     """Calls of a macro that only calls another one become calls of that one; then names lose numbers that they do not need."""
     for name, draft in [*workspace.macros.items()]:
         inner = draft.body[0] if len(draft.body) == 1 else None
@@ -47,7 +47,7 @@ def _filled(text: Text, values: Mapping[str, Text]) -> Text:
     return joined(pieces)
 
 
-def _rename(old: str, new: str, workspace: Workspace) -> None:
+def _rename(old: str, new: str, workspace: FactoringState) -> None:
     draft = workspace.macros[old]
     draft.name = new
     workspace.macros = {new if name == old else name: macro for name, macro in workspace.macros.items()}

@@ -52,7 +52,7 @@ class Format(Struct, frozen=True):
     comment: tuple[bytes, str] | None = None
     """The pattern of what stands before a first comment, and a line of comment with ``{}`` for its text; None where there are none."""
     is_exact: bool = False
-    """Whether it represents every mechanism exactly, so that it carries no residue and keeps what only another format understands."""
+    """Whether it represents every mechanism exactly, so that it contains no residue and keeps what only another format understands."""
     container_of: str = ""
     """The name of the format of which it is another container, with the same content and the same extras (usdc, usdz; json)."""
     fast_container: str = ""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from hymeko_x.formats import Format
-    from hymeko_x.generate.models import Messages, Model
+    from hymeko_x.generate.models import LanguageModel, Messages
     from hymeko_x.ir.mechanism import Mechanism
 
 _FENCE = re.compile(r"```[\w-]*\n(.*?)```", re.DOTALL)
@@ -51,7 +51,7 @@ def counts_of(robot: Mechanism) -> tuple[int, int]:
     return sum(1 for _ in robot.vertices(parts.Body)), sum(view.parent != WORLD for view in robot.joints.values())
 
 
-class Step(Struct, frozen=True):
+class JudgedAnswer(Struct, frozen=True):
     """One answer: whether it passed the paper's checks, has the right numbers of elements, and is the same robot; and its faults.
 
     ``text`` is the file in it after its ``repairs``, of which each was an error that needed no model.
@@ -67,11 +67,11 @@ class Step(Struct, frozen=True):
     repairs: tuple[str, ...] = ()
 
 
-def generate(task: Task, model: Model, tries: int) -> list[Step]:
+def generate(task: Task, model: LanguageModel, tries: int) -> list[JudgedAnswer]:
     """The answers until one is the same robot, at most so many. Raises: Refusal when the model gives none."""
     prompt = first_prompt(task.prompt, task.format, task.text, *task.counts)
     messages: Messages = [{"role": "user", "content": prompt}]
-    steps: list[Step] = []
+    steps: list[JudgedAnswer] = []
     while len(steps) < tries and not (steps and steps[-1].is_same):
         answer = model(messages)
         step = judged(task, answer, len(steps) + 1)
@@ -86,21 +86,21 @@ def file_in(answer: str) -> str:
     return (found[1] if found else answer).strip() + "\n"
 
 
-def judged(task: Task, answer: str, attempt: int) -> Step:
+def judged(task: Task, answer: str, attempt: int) -> JudgedAnswer:
     """An answer with its faults. What cannot be read fails everything, and what fails one check is still asked the next."""
     mended = repair(file_in(answer)) if task.format is OWN else Repair(file_in(answer))
     text = mended.text
     try:
         robot = loads(text, task.format.name).mechanism
     except Refusal as refusal:
-        return Step(attempt, False, False, False, tuple(str(one) for one in refusal.diagnostics), answer, text, mended.changes)
+        return JudgedAnswer(attempt, False, False, False, tuple(str(one) for one in refusal.diagnostics), answer, text, mended.changes)
     report = Report()
     validate(robot, NO_FILES, report, [Profile.COMPLETE])
     complete = [str(one) for one in report.errors()]
     numbers = zip(("links", "joints"), counts_of(robot), task.counts, strict=True)
     counts = [f"there are {found} {word}, expected {expected}" for word, found, expected in numbers if found != expected]
     different = list(_differences(task, text))
-    return Step(attempt, not complete, not counts, not different, (*complete, *counts, *different), answer, text, mended.changes)
+    return JudgedAnswer(attempt, not complete, not counts, not different, (*complete, *counts, *different), answer, text, mended.changes)
 
 
 def _differences(task: Task, text: str) -> Iterator[str]:

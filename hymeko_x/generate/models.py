@@ -25,7 +25,7 @@ MOST_BYTES = 2**24
 _SECONDS = 300.0
 
 
-class Model(Protocol):
+class LanguageModel(Protocol):
     """Answers the messages of a conversation."""
 
     def __call__(self, messages: Messages) -> str:

@@ -20,7 +20,7 @@ from hymeko_x.language.printer import print_name
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from hymeko_x.outline import Block, Field
+    from hymeko_x.outline import OutlineBlock, OutlineField
 
 _MOST = 100
 """Errors that are mended in one text; each costs a reading."""
@@ -33,7 +33,7 @@ _BRACKETS = re.compile(rf"{_SKIPPED}|(?P<open>[{{\[(])|(?P<close>[}}\])])")
 _PAIRS = {"{": "}", "[": "]", "(": ")"}
 
 
-class Change(Struct, frozen=True):
+class ChangedText(Struct, frozen=True):
     """A text with one change, and which that is."""
 
     text: str
@@ -71,7 +71,7 @@ def _fault(text: str) -> Diagnostic | None:
     return None
 
 
-def _helping(text: str, fault: Diagnostic) -> Iterator[tuple[Change, Diagnostic | None]]:
+def _helping(text: str, fault: Diagnostic) -> Iterator[tuple[ChangedText, Diagnostic | None]]:
     """The changes that leave a text without an error at this place, each with the next error."""
     for change in _closed(text) if fault.code is codes.SYNTAX else _changes(text, fault):
         following = _fault(change.text)
@@ -88,13 +88,13 @@ def _content(text: str) -> str:
 # ---- brackets --------------------------------------------------------------------------------------------------------------------
 
 
-def _closed(text: str) -> Iterator[Change]:
+def _closed(text: str) -> Iterator[ChangedText]:
     """The text with its brackets in pairs, whole or without the last statements, of which a part may be missing."""
     paired = _paired(text)
-    yield Change(paired, "its brackets are in pairs")
+    yield ChangedText(paired, "its brackets are in pairs")
     for _ in range(_CUTS):
         text = re.sub(r"(?:(?<=[{}])|\n|^)[^\n{}]*[{}\s]*$", "", text)
-        yield Change(_paired(text), "it ends before the statement that is not complete")
+        yield ChangedText(_paired(text), "it ends before the statement that is not complete")
 
 
 def _paired(text: str) -> str:
@@ -120,7 +120,7 @@ def _paired(text: str) -> str:
 # ---- names and values ------------------------------------------------------------------------------------------------------------
 
 
-def _changes(text: str, fault: Diagnostic) -> Iterator[Change]:
+def _changes(text: str, fault: Diagnostic) -> Iterator[ChangedText]:
     """The changes that may remove an error of meaning, the smallest first."""
     if fault.origin is None or fault.origin.line is None or fault.origin.column is None:
         return
@@ -134,7 +134,7 @@ def _changes(text: str, fault: Diagnostic) -> Iterator[Change]:
     yield from _removals(text.encode(), place, path)
 
 
-def _path(block: Block, place: int) -> list[Block]:
+def _path(block: OutlineBlock, place: int) -> list[OutlineBlock]:
     """The blocks around a byte, from the whole text to the innermost."""
     found = [block]
     while inner := next((child for child in found[-1].children if child.start <= place < child.end), None):
@@ -142,7 +142,7 @@ def _path(block: Block, place: int) -> list[Block]:
     return found
 
 
-def _spelt(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> Iterator[Change]:
+def _spelt(data: bytes, fault: Diagnostic, place: int, path: list[OutlineBlock]) -> Iterator[ChangedText]:
     """The name that the hint suggests."""
     suggested = _SUGGESTED.search(fault.hint)
     written = re.findall(r"'([^']+)'", fault.message)
@@ -155,7 +155,7 @@ def _spelt(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> Ite
         yield _replaced(data, place + found.start(), place + found.end(), print_name(name), f"it is now '{name}'")
 
 
-def _renamed(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> Iterator[Change]:
+def _renamed(data: bytes, fault: Diagnostic, place: int, path: list[OutlineBlock]) -> Iterator[ChangedText]:
     """Another name for what is defined twice: the references mean the first one."""
     found = _PLAIN_NAME.search(data[place:].decode())
     if found is None:
@@ -168,7 +168,7 @@ def _renamed(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> I
     yield _replaced(data, start, start + len(found[0].encode()), name, f"the second is now '{name}'")
 
 
-def _defined(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> Iterator[Change]:
+def _defined(data: bytes, fault: Diagnostic, place: int, path: list[OutlineBlock]) -> Iterator[ChangedText]:
     """An empty element of the name, before the block that refers to it."""
     name = next(iter(re.findall(r"'([^'.]+)'", fault.message)), None)
     is_element = "is not defined" in fault.message and len(path) > 2
@@ -176,20 +176,20 @@ def _defined(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> I
         yield _replaced(data, path[-1].start, path[-1].start, f"{print_name(name)} {{}}\n", f"'{name}' is now defined, without fields")
 
 
-def _untyped(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> Iterator[Change]:
+def _untyped(data: bytes, fault: Diagnostic, place: int, path: list[OutlineBlock]) -> Iterator[ChangedText]:
     """The element without its type."""
     types = path[-1].fields.get(TYPES)
     if types is not None and path[-1].start <= place < path[-1].head:
         yield _replaced(data, *_trimmed(data, types), "", "the element has no type now")
 
 
-def _trimmed(data: bytes, field: Field) -> tuple[int, int]:
+def _trimmed(data: bytes, field: OutlineField) -> tuple[int, int]:
     """The bytes of the types with the colon before them."""
     colon = data.rfind(b":", 0, field.value_end - len(field.text.encode()) + 1)
     return (colon if data[field.start : field.start + 1] != b":" else field.start), field.end
 
 
-_BY_CODE: dict[object, tuple[Callable[[bytes, Diagnostic, int, list[Block]], Iterator[Change]], ...]] = {
+_BY_CODE: dict[object, tuple[Callable[[bytes, Diagnostic, int, list[OutlineBlock]], Iterator[ChangedText]], ...]] = {
     codes.DUPLICATE_NAME: (_renamed,),
     codes.UNDEFINED_REFERENCE: (_defined,),
     codes.UNKNOWN_TYPE: (_untyped,),
@@ -197,7 +197,7 @@ _BY_CODE: dict[object, tuple[Callable[[bytes, Diagnostic, int, list[Block]], Ite
 }
 
 
-def _removals(data: bytes, place: int, path: list[Block]) -> Iterator[Change]:
+def _removals(data: bytes, place: int, path: list[OutlineBlock]) -> Iterator[ChangedText]:
     """The text without the statement at a place, or without a block around it; the whole text is no block."""
     innermost = path[-1]
     for name, field in innermost.fields.items():
@@ -210,11 +210,11 @@ def _removals(data: bytes, place: int, path: list[Block]) -> Iterator[Change]:
         yield _without(data, block.start, block.end, f"block '{block.name}'")
 
 
-def _without(data: bytes, start: int, end: int, what: str) -> Change:
+def _without(data: bytes, start: int, end: int, what: str) -> ChangedText:
     """The text without some bytes, and without the comma behind them."""
     comma = re.match(rb"\s*[,;]", data[end:])
     return _replaced(data, start, end + (comma.end() if comma else 0), " ", f"{what} is removed")
 
 
-def _replaced(data: bytes, start: int, end: int, new: str, done: str) -> Change:
-    return Change((data[:start] + new.encode() + data[end:]).decode(), done)
+def _replaced(data: bytes, start: int, end: int, new: str, done: str) -> ChangedText:
+    return ChangedText((data[:start] + new.encode() + data[end:]).decode(), done)

@@ -36,7 +36,7 @@ class Attribute(NamedTuple):
     compare: bool
 
 
-class Layout(NamedTuple):
+class FieldLayout(NamedTuple):
     """The fields of a class, with what gets all their values at once, and those that count in comparisons."""
 
     attributes: tuple[Attribute, ...]
@@ -71,14 +71,14 @@ def attributes_of(part: object) -> tuple[Attribute, ...]:
     return layout.attributes
 
 
-def _layout_of(kind: Any) -> Layout | None:
+def _layout_of(kind: Any) -> FieldLayout | None:
     if not issubclass(kind, Struct):
         return None
     names, uncompared = kind.__struct_fields__, kind.uncompared if issubclass(kind, Noted) else ()
     defaults = (*[NODEFAULT] * (len(names) - len(kind.__struct_defaults__)), *kind.__struct_defaults__)
     attributes = tuple(Attribute(name, default, name not in uncompared) for name, default in zip(names, defaults, strict=True))
     counting = tuple(f for f in attributes if f.compare)
-    return Layout(attributes, getter([f.name for f in attributes]), counting, getter([f.name for f in counting]))
+    return FieldLayout(attributes, getter([f.name for f in attributes]), counting, getter([f.name for f in counting]))
 
 
 def getter(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:
@@ -88,7 +88,7 @@ def getter(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:
     return lambda value: tuple([getattr(value, name) for name in names])
 
 
-layout_of: Callable[[Any], Layout | None] = cache(_layout_of)
+layout_of: Callable[[Any], FieldLayout | None] = cache(_layout_of)
 """The fields of a part; None for every other type."""
 
 

@@ -228,9 +228,9 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
         """For each body (and the world) the frames, cameras, lights and sensors on it, in order."""
         found: dict[Id, list[MountView]] = {}
         for key, _, arcs in self.edges(parts.Mount):
-            body, thing = _ends(arcs)
-            if body is not None and thing is not None:
-                found.setdefault(body.target, []).append(MountView(key, thing.target, body.target, pose_weight(body)))
+            body, mounted = _ends(arcs)
+            if body is not None and mounted is not None:
+                found.setdefault(body.target, []).append(MountView(key, mounted.target, body.target, pose_weight(body)))
         return {key: tuple(views) for key, views in found.items()}
 
     def vertex(self, key: Id, part: type[P]) -> P:
@@ -351,9 +351,9 @@ def shape_edge(shape: parts.Shape, body: Id, pose: Pose = IDENTITY, mesh: Id | N
     return Edge(shape, tuple(arcs))
 
 
-def mount_edge(body: Id, thing: Id, pose: Pose = IDENTITY) -> RobotEdge:
+def mount_edge(body: Id, mounted: Id, pose: Pose = IDENTITY) -> RobotEdge:
     """The edge that puts a frame, camera, light or sensor on a body."""
-    return Edge(parts.Mount(), (_posed(body, 1, pose), Arc(thing, -1)))
+    return Edge(parts.Mount(), (_posed(body, 1, pose), Arc(mounted, -1)))
 
 
 def sense_edge(measured: Id, sensor: Id) -> RobotEdge:

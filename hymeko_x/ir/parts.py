@@ -117,7 +117,7 @@ class Mesh(Struct, frozen=True, gc=False):
 MESH_POINTS = ("vertices", "faces", "texcoords", "texfaces", "normals", "normalfaces")
 """The fields of a mesh that a file of it would have."""
 
-# ---- vertices: things on a mechanism -----------------------------------------------------------------------------------------
+# ---- vertices: elements on bodies -----------------------------------------------------------------------------------------
 
 
 class Actuator(Struct, frozen=True, gc=False):
@@ -196,7 +196,7 @@ class Shape(Struct, frozen=True, gc=False):
 
 
 class Mount(Struct, frozen=True, gc=False):
-    """Where a frame, camera, light or sensor sits. Arcs: ``+ body`` weight Pose (its frame in the body), ``- thing``."""
+    """Where a frame, camera, light or sensor sits. Arcs: ``+ body`` weight Pose (its frame in the body), ``- element``."""
 
 
 class Layer(Struct, frozen=True, gc=False):

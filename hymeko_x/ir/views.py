@@ -44,6 +44,6 @@ class MountView(NamedTuple):
     """A frame, camera, light or sensor with the body that it sits on, and its pose there."""
 
     id: Id
-    thing: Id
+    mounted: Id
     body: Id
     pose: Pose

@@ -92,7 +92,7 @@ class Scope(Struct):
         return scope.full(path[-1]) if path[-1] in scope.elements else None
 
 
-class Element(NamedTuple):
+class ExpandedElement(NamedTuple):
     """A node or edge after expansion: full name, its node with plain values, its types from the nearest to the base."""
 
     name: str
@@ -115,7 +115,7 @@ class Instance(NamedTuple):
     scope: Scope
 
 
-class Change(NamedTuple):
+class Amendment(NamedTuple):
     """``group.name { .. }``: fields of an element that another item makes."""
 
     node: Node
@@ -186,7 +186,7 @@ def _without_node_words(items: tuple[Item, ...]) -> tuple[Item, ...]:
 
 
 def _is_type(item: Expansion, applied: set[tuple[str, int, int]]) -> bool:
-    if not isinstance(item, Element) or not item.node.edge or place_of(item.node) not in applied:
+    if not isinstance(item, ExpandedElement) or not item.node.edge or place_of(item.node) not in applied:
         return False
     return not any(isinstance(inner, ArcItem) and not role_of(inner) for inner in item.node.items)
 
@@ -194,16 +194,16 @@ def _is_type(item: Expansion, applied: set[tuple[str, int, int]]) -> bool:
 def _changed(found: Iterator[Expansion]) -> tuple[Expansion, ...]:
     """The items with the changes of elements that this text makes; those of imported robots are left for their reader."""
     items = list(found)
-    changes = [item for item in items if isinstance(item, Change)]
+    changes = [item for item in items if isinstance(item, Amendment)]
     if not changes:
         return tuple(items)
-    places = {(item.name, bool(item.node.edge)): place for place, item in enumerate(items) if isinstance(item, Element)}
+    places = {(item.name, bool(item.node.edge)): place for place, item in enumerate(items) if isinstance(item, ExpandedElement)}
     done: set[int] = set()
     for change in changes:
         name = change.scope.resolve(change.path)
         place = places.get((name or "", bool(change.node.edge)))
         element = None if place is None else items[place]
-        if place is not None and isinstance(element, Element):
+        if place is not None and isinstance(element, ExpandedElement):
             done.add(id(change))
             items[place] = element._replace(node=element.node._replace(items=merge(element.node.items, change.node.items)))
     return tuple(item for item in items if id(item) not in done)
@@ -271,7 +271,7 @@ def _is_data(item: Item) -> bool:
 
 
 _DESCRIBING = (Field, Import, Using, Comment)
-Expansion = Element | Statement | Instance | Change
+Expansion = ExpandedElement | Statement | Instance | Amendment
 
 
 class _Expansion:
@@ -309,7 +309,7 @@ class _Expansion:
             return
         name = fill_text(node.name, environment, node, self._file)
         if node.within:
-            yield Change(self._plain(node, name, environment), scope)
+            yield Amendment(self._plain(node, name, environment), scope)
             return
         robot = self._templates.robot(node)
         if robot is not None:
@@ -331,7 +331,7 @@ class _Expansion:
             if not isinstance(item, Import | Using)
         )
         found = node._replace(name=name, items=plain, stereotypes=())
-        yield Element(scope.full(name), found, preset.types, scope, preset.has_prototype)
+        yield ExpandedElement(scope.full(name), found, preset.types, scope, preset.has_prototype)
 
     def _plain(self, node: Node, name: str, environment: Environment) -> Node:
         """The node with plain values."""

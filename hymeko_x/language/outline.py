@@ -8,14 +8,14 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x.language.parser import machine
-from hymeko_x.outline import Block, Field, Style
+from hymeko_x.outline import BlockStyle, OutlineBlock, OutlineField
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from hymeko_x.language.machine import Convert, Reduce
 
-STYLE = Style("", "", rb"[ \t]*(?://[^\n]*|#[^\n]*|/\*[^\n]*?\*/[ \t]*)?")
+STYLE = BlockStyle("", "", rb"[ \t]*(?://[^\n]*|#[^\n]*|/\*[^\n]*?\*/[ \t]*)?")
 
 NAME = "name of the node"
 """The name of the field that is a node's own name."""
@@ -60,14 +60,14 @@ class _Terminals(dict[str, "Convert"]):
         return piece
 
 
-def block_of(text: str, file: str) -> Block:
+def block_of(text: str, file: str) -> OutlineBlock:
     """The block of the whole of a text that can be parsed; offsets are those of its UTF-8 bytes."""
     terminals = _Terminals()
     actions = {name: _action(name, terminals) for name in ("start", "block", "argument", *_VALUES, *_FIELDS, *_ARCS, *_NODES)}
     top: _Span = machine().run(text, terminals, actions, [])
     byte = _byte_offsets(text)
-    whole = Block("", "", file, 0, byte(len(text)), 0, 0, (0, byte(len(text))))
-    stack: list[tuple[Block, Sequence[Any]]] = [(whole, top.parts)]
+    whole = OutlineBlock("", "", file, 0, byte(len(text)), 0, 0, (0, byte(len(text))))
+    stack: list[tuple[OutlineBlock, Sequence[Any]]] = [(whole, top.parts)]
     while stack:
         block, items = stack.pop()
         counts: Counter[str] = Counter()
@@ -78,7 +78,9 @@ def block_of(text: str, file: str) -> Block:
                 stack.append((inner, content))
             elif item.kind == "bare" and text[item.start : item.end] == ALONE:
                 start, end = byte(item.start), byte(item.end)
-                block.add(Block("", ALONE, file, start, end, end, end, (end, end), {NAME: Field(ALONE, start, end, start, end)}))
+                block.add(
+                    OutlineBlock("", ALONE, file, start, end, end, end, (end, end), {NAME: OutlineField(ALONE, start, end, start, end)})
+                )
             elif item.kind in (*_FIELDS, *_ARCS):
                 name, value = _field(item, text)
                 counts[name] += 1
@@ -98,21 +100,21 @@ def _byte_offsets(text: str) -> Callable[[int], int]:
     return places.__getitem__
 
 
-def _node(item: _Span, text: str, file: str, byte: Callable[[int], int]) -> tuple[Block, tuple[Any, ...]]:
+def _node(item: _Span, text: str, file: str, byte: Callable[[int], int]) -> tuple[OutlineBlock, tuple[Any, ...]]:
     content = item.parts[-1]
     words = [part for part in item.parts[:-1] if part.kind in ("NAME", "path", "EDGE_WORD", "STRING")]
     own = next(part for part in words if part.kind in ("NAME", "path"))
     name = text[own.start : own.end]
     tag = "" if words[0] is own else text[words[0].start : words[0].end]
     inside = byte(content.start) + 1, byte(content.end) - 1
-    fields = {NAME: Field(name, byte(own.start), byte(own.end), byte(own.start), byte(own.end))}
+    fields = {NAME: OutlineField(name, byte(own.start), byte(own.end), byte(own.start), byte(own.end))}
     types = next(
         (part for given in item.parts for part in (given, *given.parts) if given.kind in _TYPES and part.kind == "stereotypes"), None
     )
     if types is not None:
         start, end = byte(types.start), byte(types.end)
-        fields[TYPES] = Field(text[types.start : types.end].lstrip(": "), start, end, start, end)
-    return Block(tag, name, file, byte(item.start), byte(item.end), inside[0], inside[0], inside, fields), content.parts
+        fields[TYPES] = OutlineField(text[types.start : types.end].lstrip(": "), start, end, start, end)
+    return OutlineBlock(tag, name, file, byte(item.start), byte(item.end), inside[0], inside[0], inside, fields), content.parts
 
 
 def _field(item: _Span, text: str) -> tuple[str, _Span]:
@@ -125,8 +127,8 @@ def _field(item: _Span, text: str) -> tuple[str, _Span]:
     return name[0] if name else text[item.start : item.end], item.parts[-1] if item.kind == "field" else item
 
 
-def _placed(item: _Span, value: _Span, text: str, byte: Callable[[int], int]) -> Field:
+def _placed(item: _Span, value: _Span, text: str, byte: Callable[[int], int]) -> OutlineField:
     start = item.start
     while start and text[start - 1].isspace():
         start -= 1
-    return Field(text[value.start : value.end], byte(start), byte(item.end), byte(value.start), byte(value.end))
+    return OutlineField(text[value.start : value.end], byte(start), byte(item.end), byte(value.start), byte(value.end))

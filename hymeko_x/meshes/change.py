@@ -31,7 +31,7 @@ _NEAREST = 24
 _FEW = 400
 
 
-class Change(NamedTuple):
+class MeshChange(NamedTuple):
     """One quantity that differs: its name, its value before, and its value after."""
 
     name: str
@@ -39,20 +39,20 @@ class Change(NamedTuple):
     after: float
 
 
-def changes(before: Submesh, after: Submesh) -> tuple[Change, ...]:
+def changes(before: Submesh, after: Submesh) -> tuple[MeshChange, ...]:
     """What differs from one mesh to the other, in m; nothing where they show the same triangles, texture coordinates and normals.
 
     The order of triangles does not count, nor whether points are shared; points of no triangle do where both meshes keep them.
     """
     if _are_same_triangles(before, after):
         return (*_of_places(before, after), *_of_normals(before, after))
-    found = [Change(TRIANGLES, len(before.faces), len(after.faces))]
+    found = [MeshChange(TRIANGLES, len(before.faces), len(after.faces))]
     measures = (("volume", volume), ("area", area)) if is_closed(before) and is_closed(after) else (("area", area),)
-    sizes = [Change(name, size(before), size(after)) for name, size in measures]
+    sizes = [MeshChange(name, size(before), size(after)) for name, size in measures]
     found += [change for change in sizes if abs(change.before - change.after) > _ROUNDING * max(abs(change.before), abs(change.after))]
-    found.append(Change("distance", 0.0, distance(before, after)))
+    found.append(MeshChange("distance", 0.0, distance(before, after)))
     rows = [change for change in found if change.before != change.after]
-    return (*rows, *_of_places(before, after), *_of_lost_normals(before, after)) or (Change(ORDER, 0.0, 1.0),)
+    return (*rows, *_of_places(before, after), *_of_lost_normals(before, after)) or (MeshChange(ORDER, 0.0, 1.0),)
 
 
 def sorted_triangles(part: Submesh) -> Submesh:
@@ -102,17 +102,17 @@ def _are_same_triangles(a: Submesh, b: Submesh) -> bool:
     return bool(np.abs(a.points[a.faces] - b.points[b.faces]).max(initial=0.0) <= _ROUNDING * extent)
 
 
-def _of_places(a: Submesh, b: Submesh) -> Iterator[Change]:
+def _of_places(a: Submesh, b: Submesh) -> Iterator[MeshChange]:
     """The change of texture coordinates: how many triangles have them, and how far they are moved at most."""
     ours, theirs = _places(a), _places(b)
     if ours is None and theirs is None:
         return
     if ours is None or theirs is None:
-        yield Change("texture coordinates", 0 if ours is None else len(ours), 0 if theirs is None else len(theirs))
+        yield MeshChange("texture coordinates", 0 if ours is None else len(ours), 0 if theirs is None else len(theirs))
     elif ours.shape == theirs.shape:
         moved = float(np.abs(ours - theirs).max(initial=0.0))
         if moved > _ROUNDING * max(1.0, float(np.abs(ours).max(initial=0.0))):
-            yield Change("places in the image", 0.0, moved)
+            yield MeshChange("places in the image", 0.0, moved)
 
 
 def _places(part: Submesh) -> NDArray[np.float64] | None:
@@ -123,19 +123,19 @@ def _places(part: Submesh) -> NDArray[np.float64] | None:
     return found
 
 
-def _of_normals(a: Submesh, b: Submesh) -> Iterator[Change]:
+def _of_normals(a: Submesh, b: Submesh) -> Iterator[MeshChange]:
     """The change of the normals of a mesh that has some, by corner: that they are gone, or how far they are turned at most, in rad."""
     yield from _of_lost_normals(a, b)
     ours, theirs = _normals(a), _normals(b)
     if ours is not None and theirs is not None:
         chord = float(np.linalg.norm(ours - theirs, axis=2).max(initial=0.0))
         if chord > _TURNED:
-            yield Change("turn of normals", 0.0, 2.0 * float(np.arcsin(min(chord / 2.0, 1.0))))
+            yield MeshChange("turn of normals", 0.0, 2.0 * float(np.arcsin(min(chord / 2.0, 1.0))))
 
 
-def _of_lost_normals(a: Submesh, b: Submesh) -> Iterator[Change]:
+def _of_lost_normals(a: Submesh, b: Submesh) -> Iterator[MeshChange]:
     if a.normals is not None and b.normals is None:
-        yield Change("normals", len(a.faces), 0)
+        yield MeshChange("normals", len(a.faces), 0)
 
 
 def _normals(part: Submesh) -> NDArray[np.float64] | None:

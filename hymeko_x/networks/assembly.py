@@ -10,7 +10,7 @@ from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.networks.domains import domains_of
 from hymeko_x.networks.laws import parse_law
-from hymeko_x.networks.network import EFFORTS, MOTIONS, Branch, Element, Network
+from hymeko_x.networks.network import EFFORTS, MOTIONS, Branch, Network, NetworkElement
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Refusal
@@ -53,7 +53,7 @@ def _wrong(mechanism: Mechanism, key: Id, words: str, hint: str = "") -> Refusal
 
 def _branch(mechanism: Mechanism, key: Id, arcs: tuple[RobotArc, ...]) -> Branch:
     ends: list[tuple[Id, float]] = []
-    elements: list[Element] = []
+    elements: list[NetworkElement] = []
     senses: list[tuple[Id, float, float]] = []
     for arc in arcs:
         part = mechanism.graph.vertices.get(arc.target)
@@ -73,12 +73,12 @@ def _branch(mechanism: Mechanism, key: Id, arcs: tuple[RobotArc, ...]) -> Branch
     return Branch(key, tuple(ends), tuple(elements), tuple(senses))
 
 
-def _element(mechanism: Mechanism, key: Id, part: lumped.Spring | lumped.Damper | lumped.Port, count: float) -> Element:
+def _element(mechanism: Mechanism, key: Id, part: lumped.Spring | lumped.Damper | lumped.Port, count: float) -> NetworkElement:
     if isinstance(part, lumped.Port):
         _port(mechanism, key)
-        return Element(key, part, count)
+        return NetworkElement(key, part, count)
     names = ("x", "k") if isinstance(part, lumped.Spring) else ("v", "c")
-    return Element(key, part, count, parse_law(part.law, names, str(key), mechanism.origin(key)) if part.law else None)
+    return NetworkElement(key, part, count, parse_law(part.law, names, str(key), mechanism.origin(key)) if part.law else None)
 
 
 def _port(mechanism: Mechanism, key: Id) -> lumped.Port:

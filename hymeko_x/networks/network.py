@@ -30,7 +30,7 @@ def gains_of(port: lumped.Port) -> tuple[str, ...]:
     return ("p", "i", "d") if port.kind == "pid" else ()
 
 
-class Element(Struct, frozen=True):
+class NetworkElement(Struct, frozen=True):
     """A spring, damper or effort port on an edge: ``count`` of them side by side, with the tree of its law if it has one."""
 
     id: Id
@@ -44,7 +44,7 @@ class Branch(Struct, frozen=True):
 
     id: Id
     ends: tuple[tuple[Id, float], ...]
-    elements: tuple[Element, ...]
+    elements: tuple[NetworkElement, ...]
     senses: tuple[tuple[Id, float, float], ...] = ()
 
 
@@ -66,7 +66,7 @@ class Network(Struct, frozen=True):
         return tuple(key for key in self.masses if key not in self.followers)
 
     @property
-    def ports(self) -> Iterator[tuple[Branch, Element]]:
+    def ports(self) -> Iterator[tuple[Branch, NetworkElement]]:
         """The ports that push, with their edges."""
         for branch in self.branches:
             yield from ((branch, element) for element in branch.elements if isinstance(element.part, lumped.Port))

@@ -61,7 +61,7 @@ _NUMBERS = re.compile(r"\[[^\]]{0,24}\]")
 _WORD = re.compile(r"([a-z]+)(?:\(|$)")
 
 
-class Group(NamedTuple):
+class LossGroup(NamedTuple):
     """Losses of which the same became: of one kind of element, and of one field or of the whole element."""
 
     verb: str
@@ -109,7 +109,7 @@ def kept_line(losses: Sequence[Loss]) -> str:
 # ---- groups ------------------------------------------------------------------------------------------------------------
 
 
-def groups(losses: Iterable[Loss]) -> list[Group]:
+def groups(losses: Iterable[Loss]) -> list[LossGroup]:
     """Losses of one fate, kind and field together.
 
     Left out are edges that go with an element that is lost as well, and the other fields of elements that are of another kind now.
@@ -128,7 +128,7 @@ def groups(losses: Iterable[Loss]) -> list[Group]:
         for verb in ("dropped", "added"):
             found.pop((verb, "drive", ""), None)
     whole = {(verb, kind) for verb, kind, field in found if not field}
-    kept = [Group(*key, tuple(losses)) for key, losses in found.items() if not _goes_with_another(*key, whole)]
+    kept = [LossGroup(*key, tuple(losses)) for key, losses in found.items() if not _goes_with_another(*key, whole)]
     return sorted(kept, key=_rank)
 
 
@@ -179,7 +179,7 @@ def _goes_with_another(verb: str, kind: str, field: str, whole: set[tuple[str, s
 _VERBS = ("dropped", "kept", "approximated", "added")
 
 
-def _rank(group: Group) -> tuple[int, bool, int]:
+def _rank(group: LossGroup) -> tuple[int, bool, int]:
     """What is gone first, and of that whole elements before fields."""
     kind = _KINDS.index(group.kind) if group.kind in _KINDS else len(_KINDS)
     return _VERBS.index(group.verb), bool(group.field), kind
@@ -194,11 +194,11 @@ def word_of(field: str) -> str:
 # ---- lines -------------------------------------------------------------------------------------------------------------
 
 
-def _line(group: Group) -> str:
+def _line(group: LossGroup) -> str:
     return f"{group.verb}: {_what(group)}{_amount(group)}: {_names(group)}"
 
 
-def _what(group: Group) -> str:
+def _what(group: LossGroup) -> str:
     count = counted(len({loss.element for loss in group.losses}), group.kind)
     return f"{group.field} of {count}" if group.field else count
 
@@ -220,7 +220,7 @@ def _counts(losses: Sequence[Loss]) -> str:
     return ", ".join(shown) or "the robot"
 
 
-def _amount(group: Group) -> str:
+def _amount(group: LossGroup) -> str:
     """The size of the numbers that are gone, or the largest error of those that are others."""
     if not group.field:
         return " by other shapes" if group.verb == "approximated" else ""
@@ -234,7 +234,7 @@ def _amount(group: Group) -> str:
     return f", {least}{_number(max(sizes))}{_unit(group)}"
 
 
-def _change(group: Group) -> str:
+def _change(group: LossGroup) -> str:
     """What the first of them was, and what it became, where both are a word or a few numbers."""
     texts = group.losses[0].before or "", group.losses[0].after or ""
     if all(map(_NUMBERS.fullmatch, texts)):
@@ -248,7 +248,7 @@ def _bare(word: str) -> str:
     return word.removesuffix("shape")
 
 
-def _unit(group: Group) -> str:
+def _unit(group: LossGroup) -> str:
     units = sorted({loss.unit for loss in group.losses if loss.unit})
     return f" {' or '.join(units)}" if units else ""
 
@@ -257,7 +257,7 @@ def _number(value: float) -> str:
     return number_text(float(f"{value:.{_SHORT}g}"))
 
 
-def _names(group: Group) -> str:
+def _names(group: LossGroup) -> str:
     names = list(dict.fromkeys(loss.element.partition(" ")[2] or loss.element for loss in group.losses))
     return ", ".join([*names[:_EXAMPLES], *(["..."] if len(names) > _EXAMPLES else [])])
 

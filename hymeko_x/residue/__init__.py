@@ -65,7 +65,7 @@ class Change(NamedTuple):
     there: object
 
 
-class Element(NamedTuple):
+class WholeElement(NamedTuple):
     """An element with its part: a vertex, or an edge with its arcs."""
 
     id: Id
@@ -112,9 +112,9 @@ class Residue(Struct, frozen=True):
     source: Provenance = Provenance()
     alignment: Alignment = field(default_factory=Alignment)
     changes: tuple[Change, ...] = ()
-    additions: tuple[Element, ...] = ()
-    removals: tuple[Element, ...] = ()
-    weights: tuple[Element, ...] = ()
+    additions: tuple[WholeElement, ...] = ()
+    removals: tuple[WholeElement, ...] = ()
+    weights: tuple[WholeElement, ...] = ()
     sides: Sides = field(default_factory=Sides)
     order: tuple[Run, ...] = ()
     layout: tuple[Id, ...] | None = None

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
-    from hymeko_x.residue import Element, Residue
+    from hymeko_x.residue import Residue, WholeElement
 
 DOFS = ("data", "dofs")
 """Where the dofs of a joint stand in its edge."""
@@ -24,19 +24,19 @@ _PARENT = ("arcs", 0, "target")
 _KIND = ("data", "dofs", 0, "kind")
 
 
-def hinges_of_balls(residue: Residue) -> dict[Id, list[Element]]:
+def hinges_of_balls(residue: Residue) -> dict[Id, list[WholeElement]]:
     """The joints above the last hinge of each ball, from above; the last one has the name of the ball."""
-    above: dict[Id, Element] = {}
+    above: dict[Id, WholeElement] = {}
     for removal in residue.removals:
         if isinstance(removal.part, Edge) and isinstance(removal.part.data, Joint) and len(removal.part.arcs) > 1:
             above[removal.part.arcs[1].target] = removal
     parents = {change.element: change for change in residue.changes if change.path == _PARENT}
-    found: dict[Id, list[Element]] = {}
+    found: dict[Id, list[WholeElement]] = {}
     for change in residue.changes if above else ():
         ends = parents.get(change.element)
         if change.path != _KIND or change.value is not DofKind.BALL or ends is None:
             continue
-        chain: list[Element] = []
+        chain: list[WholeElement] = []
         body = ends.there
         while body in above and len(chain) < _ABOVE:
             chain.insert(0, above[body])
@@ -46,7 +46,7 @@ def hinges_of_balls(residue: Residue) -> dict[Id, list[Element]]:
     return found
 
 
-def moved_and_apart(image: Mechanism, balls: Mapping[Id, Sequence[Element]]) -> tuple[dict[Id, RobotArc], set[Id]]:
+def moved_and_apart(image: Mechanism, balls: Mapping[Id, Sequence[WholeElement]]) -> tuple[dict[Id, RobotArc], set[Id]]:
     """The balls of which the first hinge alone is at another place or on another body, with its arc to that; those edited otherwise.
 
     Something new may be on a body between two hinges as well.
@@ -81,7 +81,7 @@ def _is_same(now: RobotEdge | None, then: object) -> bool:
     return is_alike(now, then) and [arc.target for arc in now.arcs] == [arc.target for arc in then.arcs]
 
 
-def _is_bare(image: Mechanism, ball: Id, chain: Sequence[Element]) -> bool:
+def _is_bare(image: Mechanism, ball: Id, chain: Sequence[WholeElement]) -> bool:
     """Whether the bodies between the hinges carry nothing else."""
     hinges = {ball, *(hinge.id for hinge in chain)}
     bodies = [hinge.part.arcs[1].target for hinge in chain if isinstance(hinge.part, Edge)]

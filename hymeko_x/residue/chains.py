@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.parts import Dof, VertexPart
     from hymeko_x.ir.values import Pose
-    from hymeko_x.residue import Change, Element, Fold, Residue
+    from hymeko_x.residue import Change, Fold, Residue, WholeElement
 
 MOTION = frozenset({"kind", "axis", "anchor", "pitch", "ref"})
 """Fields of a dof that are given in the frame of its joint."""
@@ -116,7 +116,7 @@ def _of_chain(change: Change, dofs: Mapping[Id, list[tuple[Id, int]]]) -> Change
     return None
 
 
-def _at_chain(element: Element, names: Mapping[Id, Mapping[str, Id]]) -> VertexPart | RobotEdge:
+def _at_chain(element: WholeElement, names: Mapping[Id, Mapping[str, Id]]) -> VertexPart | RobotEdge:
     """The part of an element, whose arcs to a dof of a joint lead to the joint of that dof in the chain."""
     edge = element.part
     if not isinstance(edge, Edge) or not any(arc.target in names for arc in edge.arcs):

@@ -21,16 +21,16 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge
     from hymeko_x.ir.parts import VertexPart
     from hymeko_x.ir.values import Pose
-    from hymeko_x.residue import Change, Element, Residue
+    from hymeko_x.residue import Change, Residue, WholeElement
 
 
-def pieces_of_meshes(image: Mechanism, residue: Residue) -> dict[Id, list[Element]]:
+def pieces_of_meshes(image: Mechanism, residue: Residue) -> dict[Id, list[WholeElement]]:
     """The other pieces of each shape whose mesh the image has in several: they show meshes that only the image has.
 
     Pieces of two meshes on one body, in one place, are taken for pieces of both.
     """
     only_there = {removal.id for removal in residue.removals}
-    waiting: dict[str, list[Element]] = defaultdict(list)
+    waiting: dict[str, list[WholeElement]] = defaultdict(list)
     for removal in residue.removals:
         if isinstance(removal.part, Edge) and _mesh_of(removal.part) in only_there:
             waiting[row_of(removal.id)].append(removal)
@@ -41,7 +41,7 @@ def pieces_of_meshes(image: Mechanism, residue: Residue) -> dict[Id, list[Elemen
     firsts = [key for key, mesh in known.items() if mesh in changed or (mesh in only_there and key in changed)]
     gone = [key for key in changed if key.kind == "shape" and key not in image.graph.edges]
     places = {change.element: pose_weight(change.there[0]) for change in residue.changes if _is_of_arcs(change)}  # type: ignore[index]
-    found: dict[Id, list[Element]] = {}
+    found: dict[Id, list[WholeElement]] = {}
     for key in (*firsts, *gone):
         pieces = [piece for piece in waiting.get(row_of(key), ()) if key not in only_there]
         found[key] = [piece for piece in pieces if key not in places or is_alike(_pose_of(piece), places[key])]
@@ -54,7 +54,7 @@ def _mesh_of(edge: RobotEdge) -> Id | None:
     return next((arc.target for arc in edge.arcs if arc.role == "mesh"), None) if is_mesh else None
 
 
-def _pose_of(piece: Element) -> Pose:
+def _pose_of(piece: WholeElement) -> Pose:
     assert isinstance(piece.part, Edge)
     return pose_weight(piece.part.arcs[0])
 
@@ -75,7 +75,7 @@ def _materials_there(residue: Residue) -> dict[Id, Id]:
     return found
 
 
-def taken_apart(image: Mechanism, residue: Residue, pieces: Mapping[Id, Sequence[Element]]) -> set[Id]:
+def taken_apart(image: Mechanism, residue: Residue, pieces: Mapping[Id, Sequence[WholeElement]]) -> set[Id]:
     """The shapes of which a piece was edited, moved, coloured or removed by itself in the image."""
     assets, materials = {removal.id: removal.part for removal in residue.removals}, _materials_there(residue)
     apart: set[Id] = set()

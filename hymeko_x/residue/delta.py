@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from hymeko_x.compare.leaves import TURN, leaves_between
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import ROOT, Id
-from hymeko_x.residue import Change, Element, Residue
+from hymeko_x.residue import Change, Residue, WholeElement
 from hymeko_x.residue.align import align
 from hymeko_x.residue.landmarks import NAMED, landmarks_of
 from hymeko_x.residue.sides import by_kind, moves, sides_between
@@ -65,17 +65,17 @@ def _there(leaf: Leaf) -> object:
     return NODEFAULT if leaf.default is not NODEFAULT and leaf.after == leaf.default else leaf.after
 
 
-def _only_in(mine: Mapping[Id, VertexPart | RobotEdge], theirs: Mapping[Id, object]) -> Iterator[Element]:
-    return (Element(key, part) for key, part in mine.items() if key not in theirs)
+def _only_in(mine: Mapping[Id, VertexPart | RobotEdge], theirs: Mapping[Id, object]) -> Iterator[WholeElement]:
+    return (WholeElement(key, part) for key, part in mine.items() if key not in theirs)
 
 
-def _weights(image: Mechanism, changes: Iterable[Change], removals: Iterable[Element]) -> Iterator[Element]:
+def _weights(image: Mechanism, changes: Iterable[Change], removals: Iterable[WholeElement]) -> Iterator[WholeElement]:
     """The shapes of bodies of which only the image states the mass, but for those that only the image has."""
     gone = {key for key, _ in removals}
     for change in changes:
         if change.path == ("inertial",) and change.value is None and change.element.kind == "body":
             yield from (
-                Element(view.id, image.graph.edges[view.id]) for view in image.shapes.get(change.element, ()) if view.id not in gone
+                WholeElement(view.id, image.graph.edges[view.id]) for view in image.shapes.get(change.element, ()) if view.id not in gone
             )
 
 

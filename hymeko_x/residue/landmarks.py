@@ -37,7 +37,7 @@ class _Look:
 
     def __init__(self, mechanism: Mechanism) -> None:
         self._mechanism = mechanism
-        self._places = {view.thing: view.pose.xyz for views in mechanism.mounts.values() for view in views}
+        self._places = {view.mounted: view.pose.xyz for views in mechanism.mounts.values() for view in views}
         self._beside: dict[Id, list[Id]] = defaultdict(list)
         for edge in mechanism.graph.edges.values():
             for arc in edge.arcs:

@@ -50,7 +50,7 @@ def compared(
     moved = with_references_of(printed, as_files)
     leaves = leaves_between(moved, aligned)
     changed = (*alignment_differences(alignment), *_content_changes(mechanism, aligned, contents))
-    losses = losses_between(moved, aligned, changed, format, leaves, is_carried=is_kept)
+    losses = losses_between(moved, aligned, changed, format, leaves, is_kept=is_kept)
     if not is_kept:
         return losses, "", aligned
     source = without_points(mechanism, as_files)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.parts import VertexPart
-    from hymeko_x.residue import Change, Element, Residue
+    from hymeko_x.residue import Change, Residue, WholeElement
 
 P = TypeVar("P")
 
@@ -43,7 +43,7 @@ _ROUNDING = 1e-9
 
 
 _HOLDS: Mapping[type, int] = MappingProxyType({Mount: -1, Sense: -1, Drive: 1})
-"""The sign of the arc to the thing that an edge places."""
+"""The sign of the arc to the element that an edge places."""
 
 
 class Restored(NamedTuple):
@@ -79,7 +79,7 @@ class _Merge:
     edges: dict[Id, RobotEdge] = field(init=False)
     values: int = 0
     """How many values of the source have been put in."""
-    _parts: dict[Id, list[Element]] = field(init=False)
+    _parts: dict[Id, list[WholeElement]] = field(init=False)
     """The other parts of shapes that the image has in several."""
     _broken: dict[Id, tuple[Path, ...]] = field(init=False)
     """Those of which one part was edited by itself, and where what they share stands in them."""
@@ -87,7 +87,7 @@ class _Merge:
     """Those among them that are meshes of several colours."""
     _moved: dict[Id, RobotArc] = field(init=False)
     """The arcs to their parents of balls that were moved."""
-    _shapes_then: dict[Id, list[Element]] = field(init=False)
+    _shapes_then: dict[Id, list[WholeElement]] = field(init=False)
     """The shapes that bodies had in the image, of those that the residue tells of."""
 
     def result(self) -> Mechanism:
@@ -180,7 +180,7 @@ class _Merge:
         expected = self._shapes_then[body]
         return len(self.image.shapes.get(body, ())) == len(expected) and all(map(self._weighs_the_same, expected))
 
-    def _weighs_the_same(self, then: Element) -> bool:
+    def _weighs_the_same(self, then: WholeElement) -> bool:
         now = self.image.graph.edges.get(then.id)
         return now is not None and isinstance(then.part, Edge) and is_alike(without_surface(now), without_surface(then.part))
 
@@ -194,10 +194,10 @@ class _Merge:
         capsules = capsules_of(self.residue)
         whole = {key: key for key in capsules.values()}
 
-        def group_of(shape: Element) -> object:
+        def group_of(shape: WholeElement) -> object:
             return capsules.get(shape.id) or whole.get(shape.id) or _group_of(shape)
 
-        stand_ins: dict[object, list[Element]] = defaultdict(list)
+        stand_ins: dict[object, list[WholeElement]] = defaultdict(list)
         parts = {part.id for others in self._parts.values() for part in others}
         loose = {part.id for key in self._broken for part in self._parts[key]}
         for removal in self.residue.removals:
@@ -211,11 +211,11 @@ class _Merge:
             self._note(key, "is not restored, because what stands for it was edited")
         return kept, withheld
 
-    def _is_of_mesh_apart(self, added: Element) -> bool:
+    def _is_of_mesh_apart(self, added: WholeElement) -> bool:
         """Whether an element is the part of a mesh in a material of its own, where the mesh was taken apart."""
         return added.id.kind == "subset" and isinstance(added.part, Edge) and any(arc.target in self._apart for arc in added.part.arcs)
 
-    def _is_untouched(self, then: Element) -> bool:
+    def _is_untouched(self, then: WholeElement) -> bool:
         graph = self.image.graph
         now = graph.vertices.get(then.id) or graph.edges.get(then.id)
         return now is not None and is_alike(now, then.part)
@@ -283,10 +283,10 @@ class _Merge:
     def _drop_things(self, edge: RobotEdge, added: set[Id]) -> list[Id]:
         """Take away what was carried only to be held by an edge that is not restored: a frame's mount, an actuator's drive."""
         sign = _HOLDS.get(type(edge.data))
-        things = [arc.target for arc in edge.arcs if arc.sign == sign and arc.target in added and arc.target in self.vertices]
-        for thing in things:
-            del self.vertices[thing]
-        return things
+        elements = [arc.target for arc in edge.arcs if arc.sign == sign and arc.target in added and arc.target in self.vertices]
+        for element in elements:
+            del self.vertices[element]
+        return elements
 
     def _put_back(
         self, key: Id, removed: dict[Id, VertexPart | RobotEdge], layers: Mapping[Id, list[Id]], users: dict[Id, list[Id]]
@@ -314,7 +314,7 @@ class _Merge:
         self.report.note(codes.RESIDUE_SUPERSEDED, f"{key} {message}", element=str(key))
 
 
-def _group_of(shape: Element) -> tuple[Id, str | None] | None:
+def _group_of(shape: WholeElement) -> tuple[Id, str | None] | None:
     """What a shape belongs to: all shapes of one name on one body stand or fall together."""
     edge = shape.part
     if not (isinstance(edge, Edge) and isinstance(edge.data, Shape)):

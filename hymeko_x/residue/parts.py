@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
     from hymeko_x.ir.parts import Geometry
     from hymeko_x.ir.values import Vec3
-    from hymeko_x.residue import Element, Residue
+    from hymeko_x.residue import Residue, WholeElement
 
 GEOMETRY = ("data", "geometry")
 """Where the geometry of a shape stands in its edge."""
@@ -34,13 +34,13 @@ _NEAR = 10.0**-_DIGITS
 """How far (m) the parts of one capsule may be from where they belong."""
 
 
-def parts_of(residue: Residue) -> dict[Id, list[Element]]:
+def parts_of(residue: Residue) -> dict[Id, list[WholeElement]]:
     """The two balls at the ends of each capsule that the image has as a cylinder and these."""
-    waiting: dict[str, list[Element]] = {}
+    waiting: dict[str, list[WholeElement]] = {}
     for removal in residue.removals:
         if isinstance(removal.part, Edge) and isinstance(removal.part.data, Shape) and isinstance(removal.part.data.geometry, Sphere):
             waiting.setdefault(row_of(removal.id), []).append(removal)
-    found: dict[Id, list[Element]] = {}
+    found: dict[Id, list[WholeElement]] = {}
     for change in residue.changes:
         if change.path == GEOMETRY and isinstance(change.value, Capsule):
             balls = waiting.get(row_of(change.element), [])
@@ -90,7 +90,7 @@ def row_of(key: Id) -> str:
     return row if mark and number.isdigit() else key.name
 
 
-def _are_ends(capsule: Capsule, *balls: Element) -> bool:
+def _are_ends(capsule: Capsule, *balls: WholeElement) -> bool:
     """Whether two balls are those of a capsule."""
     edges = [ball.part for ball in balls if isinstance(ball.part, Edge)]
     sizes = [edge.data.geometry.radius for edge in edges]  # type: ignore[union-attr]
@@ -98,12 +98,12 @@ def _are_ends(capsule: Capsule, *balls: Element) -> bool:
     return all(is_alike(size, capsule.radius) for size in sizes) and math.isclose(apart, capsule.length, abs_tol=_NEAR)
 
 
-def broken(image: Mechanism, parts: Mapping[Id, Sequence[Element]]) -> set[Id]:
+def broken(image: Mechanism, parts: Mapping[Id, Sequence[WholeElement]]) -> set[Id]:
     """The shapes of which a part was edited, moved, coloured or removed by itself in the image."""
     return {key for key, others in parts.items() if not _are_whole(image, image.graph.edges.get(key), others)}
 
 
-def _are_whole(image: Mechanism, first: RobotEdge | None, others: Sequence[Element]) -> bool:
+def _are_whole(image: Mechanism, first: RobotEdge | None, others: Sequence[WholeElement]) -> bool:
     """Whether the parts still make one shape: none was resized, and they were moved and coloured together."""
     now = [image.graph.edges.get(other.id) for other in others]
     if first is None:

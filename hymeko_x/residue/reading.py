@@ -16,7 +16,7 @@ from hymeko_x.ir.types import fits, is_sound
 from hymeko_x.ir.values import Pose
 from hymeko_x.language.syntax import ArcItem, Field, Node
 from hymeko_x.language.values import decoded, decoded_turn, name_of, name_ref
-from hymeko_x.residue import Alignment, Change, Element, Fold, Join, Landmark, Residue, Run, Sides
+from hymeko_x.residue import Alignment, Change, Fold, Join, Landmark, Residue, Run, Sides, WholeElement
 from hymeko_x.residue.prefix import with_prefix
 from hymeko_x.residue.text import FILE, SIGNS, SOURCE, VERSION
 
@@ -199,7 +199,7 @@ def _path(key: Id, text: str) -> Path:
     return path if key.kind not in _EDGES or path[0] == "arcs" else ("data", *path)
 
 
-def _element(node: Node) -> Element:
+def _element(node: Node) -> WholeElement:
     key = Id(str(node.stereotypes[0].ref.path[0]), str(node.name))
     words: list[Value] = [name_ref(_CLASSES[key.kind].__name__)]
     for item in node.items:
@@ -208,12 +208,12 @@ def _element(node: Node) -> Element:
             words += [name_ref(item.name), item.value]
     data: Any = decoded(tuple(words))
     if key.kind not in _EDGES:
-        return Element(key, data)
+        return WholeElement(key, data)
     arcs = tuple(_arc(item) for item in node.items if isinstance(item, ArcItem))
     edge: RobotEdge = Edge(data, arcs)
     if not is_sound(edge):
         raise ValueError(f"no {key.kind}: {node.name}")
-    return Element(key, edge)
+    return WholeElement(key, edge)
 
 
 def _arc(item: ArcItem) -> RobotArc:

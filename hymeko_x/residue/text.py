@@ -19,7 +19,7 @@ from hymeko_x.ir.values import Pose
 from hymeko_x.language.printer import TextBlock, print_block, print_field, print_item, print_name
 from hymeko_x.language.syntax import ArcItem, Comment, Ref
 from hymeko_x.language.values import encoded, encoded_turn, given_fields, name_ref
-from hymeko_x.residue import Element
+from hymeko_x.residue import WholeElement
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -150,7 +150,7 @@ def _path_text(path: Path) -> str:
     return ".".join(map(str, path[1:] if path[0] == "data" else path))
 
 
-def _element(element: Element) -> TextBlock:
+def _element(element: WholeElement) -> TextBlock:
     """An element as a node: its part's fields, and an edge's arcs behind them."""
     key, part = element
     data = part.data if isinstance(part, Edge) else part
@@ -160,12 +160,12 @@ def _element(element: Element) -> TextBlock:
     return TextBlock(f"{print_name(key.name)} : {print_name(key.kind)}", tuple(items))
 
 
-def _element_of_file(element: Element) -> TextBlock:
+def _element_of_file(element: WholeElement) -> TextBlock:
     """The same without notations, which are of no use for finding it unchanged."""
     part = element.part
     if isinstance(part, Edge):
         arcs = tuple(replace(arc, weight=replace(arc.weight, written=None)) if isinstance(arc.weight, Pose) else arc for arc in part.arcs)
-        element = Element(element.id, replace(part, arcs=arcs))
+        element = WholeElement(element.id, replace(part, arcs=arcs))
     return _element(element)
 
 

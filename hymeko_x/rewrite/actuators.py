@@ -100,8 +100,8 @@ def with_sensors(mechanism: Mechanism, before: Mechanism, report: Report) -> Mec
 
 
 def _driven_by(mechanism: Mechanism) -> Iterator[tuple[Id, tuple[Id, str]]]:
-    """The actuators that drive one thing, with that and the role of its arc."""
+    """The actuators that drive one element, with that element and the role of its arc."""
     for _, _, arcs in mechanism.edges(Drive):
-        things = [(arc.target, arc.role) for arc in arcs if arc.sign < 0]
-        if len(things) == 1:
-            yield from ((arc.target, things[0]) for arc in arcs if arc.sign > 0)
+        driven = [(arc.target, arc.role) for arc in arcs if arc.sign < 0]
+        if len(driven) == 1:
+            yield from ((arc.target, driven[0]) for arc in arcs if arc.sign > 0)

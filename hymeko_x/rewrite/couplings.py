@@ -102,7 +102,7 @@ def _is_fixed(mechanism: Mechanism, joint: Id) -> bool:
 
 def drop_odd_tendons(mechanism: Mechanism, context: Context) -> Mechanism:
     """A tendon whose path is not valid is left out, with what acts on it."""
-    placed = {view.thing for views in mechanism.mounts.values() for view in views}
+    placed = {view.mounted for views in mechanism.mounts.values() for view in views}
     gone: set[Id] = set()
     for key, tendon, arcs in mechanism.edges(Tendon):
         wrong = wrong_path(replace(tendon, armature=0.0), arcs, mechanism.graph.edges) or _unplaced_site(mechanism, arcs, placed)
@@ -113,8 +113,8 @@ def drop_odd_tendons(mechanism: Mechanism, context: Context) -> Mechanism:
         return mechanism
     dependent = [key for key, edge in mechanism.graph.edges.items() if _leads_to(edge, gone)]
     ends = {arc.target for key in dependent for arc in mechanism.graph.edges[key].arcs}
-    things = [end for end in ends if end.kind in ("actuator", "sensor")]
-    return mechanism.replace(without=[*gone, *dependent, *things])
+    elements = [end for end in ends if end.kind in ("actuator", "sensor")]
+    return mechanism.replace(without=[*gone, *dependent, *elements])
 
 
 def _unplaced_site(mechanism: Mechanism, arcs: tuple[RobotArc, ...], placed: set[Id]) -> str | None:

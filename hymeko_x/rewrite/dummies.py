@@ -100,5 +100,5 @@ def _moved(mechanism: Mechanism, held: Held, removed: set[Id]) -> dict[Id, Robot
             if view.id not in removed:
                 edges[view.id] = joint_edge(view.joint, base, view.child, compose(pose, view.parent_pose), view.child_pose)
         for mount in mechanism.mounts.get(body, ()):
-            edges[mount.id] = mount_edge(base, mount.thing, compose(pose, mount.pose))
+            edges[mount.id] = mount_edge(base, mount.mounted, compose(pose, mount.pose))
     return edges

@@ -63,9 +63,9 @@ def held(mechanism: Mechanism) -> list[str]:
             measured.setdefault(arc.target, set()).update(kinds)
     found = []
     for view in (view for body, views in mechanism.mounts.items() if body != WORLD for view in views):
-        part = mechanism.graph.vertices.get(view.thing)
-        if isinstance(part, Camera) or (isinstance(part, Frame) and measured.get(view.thing, set()).issuperset(IMU)):
-            found += [write((view.body.name, view.thing.name, view.pose, part)) for write in writers]
+        part = mechanism.graph.vertices.get(view.mounted)
+        if isinstance(part, Camera) or (isinstance(part, Frame) and measured.get(view.mounted, set()).issuperset(IMU)):
+            found += [write((view.body.name, view.mounted.name, view.pose, part)) for write in writers]
     return found
 
 
@@ -77,6 +77,6 @@ def _mounted(mechanism: Mechanism) -> Iterator[tuple[str, str, Pose, Camera | Fr
             yield from read(extra.text)
     for views in mechanism.mounts.values():
         for view in views:
-            part = mechanism.graph.vertices.get(view.thing)
+            part = mechanism.graph.vertices.get(view.mounted)
             if isinstance(part, Sensor) and part.kind == "imu":
-                yield view.body.name, view.thing.name, view.pose, Frame()
+                yield view.body.name, view.mounted.name, view.pose, Frame()

@@ -132,14 +132,14 @@ def floating_joint(mechanism: Mechanism) -> JointView | None:
 def leave_scenery_out(mechanism: Mechanism, context: Context) -> Mechanism:
     """Planes, lights and cameras on the world are left out: they belong to a simulation, and to no robot."""
     shapes = [view.id for view in mechanism.shapes.get(WORLD, ()) if isinstance(view.shape.geometry, Plane)]
-    things = [view.thing for view in mechanism.mounts.get(WORLD, ()) if view.thing.kind in ("light", "camera")]
-    if not shapes and not things:
+    elements = [view.mounted for view in mechanism.mounts.get(WORLD, ()) if view.mounted.kind in ("light", "camera")]
+    if not shapes and not elements:
         return mechanism
     named = [data.name for key in shapes if isinstance(data := mechanism.graph.edges[key].data, Shape)]
-    names = [f"plane '{name}'" if name else "a plane" for name in named] + [f"{key.kind} '{key.name}'" for key in things]
+    names = [f"plane '{name}'" if name else "a plane" for name in named] + [f"{key.kind} '{key.name}'" for key in elements]
     message = f"what only a simulation has on the world is left out ({context.reason}): {listed(names, 4)}"
     context.report.note(codes.FOR_TARGET, message)
-    return without(mechanism, [*shapes, *things])
+    return without(mechanism, [*shapes, *elements])
 
 
 def without(mechanism: Mechanism, elements: list[Id]) -> Mechanism:

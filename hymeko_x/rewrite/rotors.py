@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Dof
     from hymeko_x.ir.values import Pose
     from hymeko_x.rewrite.context import Context
-    from hymeko_x.rewrite.servos import Inertia
+    from hymeko_x.rewrite.servos import CompositeInertia
 
 _SHOWN = 3
 """How many joints a note names."""
@@ -99,7 +99,7 @@ def _release(moved: _Matrix, dof: Dof, frame: Pose) -> float:
     return inertia
 
 
-def _matrix_of(inertia: Inertia) -> _Matrix:
+def _matrix_of(inertia: CompositeInertia) -> _Matrix:
     mass, (a, b, c), (xx, yy, zz, xy, xz, yz) = inertia
     return [
         [xx, xy, xz, 0.0, -c, b],

@@ -43,7 +43,7 @@ class Load(NamedTuple):
     weight: float
 
 
-class Inertia(NamedTuple):
+class CompositeInertia(NamedTuple):
     """Mass in kg, mass times centre in kg m, and tensor in kg m^2 of some bodies, in the world about its origin."""
 
     mass: float
@@ -162,24 +162,26 @@ def motion_of(dof: Dof, frame: Pose) -> tuple[Vec3, Vec3]:
     return axis, add(cross(apply(frame, dof.anchor), axis), scaled(axis, dof.pitch))
 
 
-def inertia_of(body: Body, pose: Pose) -> Inertia:
+def inertia_of(body: Body, pose: Pose) -> CompositeInertia:
     """The inertia of a body; zero without a mass."""
     inertial = body.inertial
     if inertial is None or not inertial.mass or inertial.mass < 0.0:
-        return Inertia(0.0, ZERO, _NO_TENSOR)
+        return CompositeInertia(0.0, ZERO, _NO_TENSOR)
     mass, (x, y, z) = inertial.mass, apply(pose, inertial.com)
     xx, yy, zz, xy, xz, yz = rotate_tensor(pose.quat, inertial.tensor) if inertial.tensor else _NO_TENSOR
     a, b, c = mass * x, mass * y, mass * z
-    return Inertia(mass, (a, b, c), (xx + b * y + c * z, yy + a * x + c * z, zz + a * x + b * y, xy - a * y, xz - a * z, yz - b * z))
+    return CompositeInertia(
+        mass, (a, b, c), (xx + b * y + c * z, yy + a * x + c * z, zz + a * x + b * y, xy - a * y, xz - a * z, yz - b * z)
+    )
 
 
-def _together(one: Inertia, other: Inertia) -> Inertia:
+def _together(one: CompositeInertia, other: CompositeInertia) -> CompositeInertia:
     """The inertia of the bodies of both."""
     tensor: Tensor = tuple(map(operator.add, one.tensor, other.tensor))
-    return Inertia(one.mass + other.mass, add(one.moment, other.moment), tensor)
+    return CompositeInertia(one.mass + other.mass, add(one.moment, other.moment), tensor)
 
 
-def _load(moved: Inertia, dof: Dof, frame: Pose) -> Load:
+def _load(moved: CompositeInertia, dof: Dof, frame: Pose) -> Load:
     """The load of a dof that stands in this frame and moves these bodies."""
     turn, velocity = motion_of(dof, frame)
     xx, yy, zz, xy, xz, yz = moved.tensor
@@ -188,7 +190,7 @@ def _load(moved: Inertia, dof: Dof, frame: Pose) -> Load:
     return Load(max(inertia, 0.0) + dof.armature, *_gravity(moved, dof, frame))
 
 
-def _gravity(moved: Inertia, dof: Dof, frame: Pose) -> tuple[float, float]:
+def _gravity(moved: CompositeInertia, dof: Dof, frame: Pose) -> tuple[float, float]:
     """The greatest force of gravity along a dof, wherever it points, and the size of that along -z."""
     axis = rotate(frame.quat, dof.axis)
     if dof.kind is DofKind.SLIDE:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def hand_over(mechanism: Mechanism, files: Files, library: str) -> Any:
     """What a library loads of the robot. Raises: Refusal HX301 when the library is not installed, HX302 when it refuses the robot."""
     row = next(row for row in formats.FORMATS if library in row.memory)
-    package = pipeline.write(mechanism, row, Options(), files, Report(), pipeline.Place(assets=row.assets))
+    package = pipeline.write(mechanism, row, Options(), files, Report(), pipeline.OutputPlace(assets=row.assets))
     try:
         load = formats.loaded(row.memory[library])
     except ImportError as error:

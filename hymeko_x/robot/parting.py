@@ -58,7 +58,7 @@ class _Sides:
         self._known[WORLD] = False
 
     def of(self, key: Id) -> bool:
-        """Whether the element belongs to them. Not deep: relations are between things, which are on bodies."""
+        """Whether the element belongs to them. Not deep: relations are between elements, which are on bodies."""
         if key not in self._known:
             self._known[key] = False
             self._known[key] = self._computed(key)

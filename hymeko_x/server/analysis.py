@@ -13,8 +13,8 @@ from msgspec import Struct, field
 
 from hymeko_x import formats
 from hymeko_x.diagnostics import Diagnostic, Severity
-from hymeko_x.server.reader import Reading, read
-from hymeko_x.server.text import Definition, Places, definitions, unquoted
+from hymeko_x.server.reader import TextReading, read
+from hymeko_x.server.text import NodeDefinition, TextPlaces, definitions, unquoted
 
 if TYPE_CHECKING:
     from hymeko_x.formats import Format
@@ -36,7 +36,7 @@ class Analysis(Struct, dict=True):
 
     path: str
     text: str
-    places: Places
+    places: TextPlaces
     format: Format | None
     diagnostics: list[Diagnostic] = field(default_factory=list)
     last_robot: Robot = no_robot
@@ -47,14 +47,14 @@ class Analysis(Struct, dict=True):
         return self.last_robot()
 
     @cached_property
-    def definitions(self) -> list[Definition]:
+    def definitions(self) -> list[NodeDefinition]:
         """Every node of the text, found when it is asked for."""
         return list(definitions(self.text))
 
     @cached_property
-    def by_name(self) -> dict[str, list[Definition]]:
+    def by_name(self) -> dict[str, list[NodeDefinition]]:
         """The nodes by the last name of their path."""
-        found: dict[str, list[Definition]] = {}
+        found: dict[str, list[NodeDefinition]] = {}
         for one in self.definitions:
             found.setdefault(one.path[-1], []).append(one)
         return found
@@ -87,11 +87,11 @@ def analyse(uri: str, text: str) -> Analysis:
     return document
 
 
-def analysis(uri: str, text: str, reading: Reading, before: Analysis | None) -> Analysis:
+def analysis(uri: str, text: str, reading: TextReading, before: Analysis | None) -> Analysis:
     """A document of which the robot is not there yet: it is that of the version before."""
     row = None if reading.format is None else formats.by_name(reading.format)
     robot = no_robot if before is None else before.last_robot
-    return Analysis(path_of(uri), text, Places(text), row, reading.diagnostics, robot)
+    return Analysis(path_of(uri), text, TextPlaces(text), row, reading.diagnostics, robot)
 
 
 def unpickled(data: bytes) -> Robot:
@@ -101,7 +101,7 @@ def unpickled(data: bytes) -> Robot:
 
 def unread(text: str, before: Analysis) -> Analysis:
     """A document with another text, about whose robot the last version tells."""
-    return Analysis(before.path, text, Places(text), before.format, before.diagnostics, before.last_robot)
+    return Analysis(before.path, text, TextPlaces(text), before.format, before.diagnostics, before.last_robot)
 
 
 SEVERITIES = {Severity.ERROR: 1, Severity.WARNING: 2, Severity.NOTE: 3}

@@ -18,7 +18,7 @@ from hymeko_x.ir.values import rpy_from_quat
 from hymeko_x.language.formatting import format_text
 from hymeko_x.language.templates import standard_templates
 from hymeko_x.robot.kinematics import all_poses
-from hymeko_x.server.text import Definition, Word, heads, unquoted, word_at, words
+from hymeko_x.server.text import NodeDefinition, PathWord, heads, unquoted, word_at, words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -37,7 +37,7 @@ _KINDS = tuple(KINDS.values())
 # ---- names ---------------------------------------------------------------------------------------------------------------------
 
 
-def definition_of(document: Analysis, word: Word) -> Definition | None:
+def definition_of(document: Analysis, word: PathWord) -> NodeDefinition | None:
     """Where a name is defined: the definition that ends with its path, the one with fewest names around it where there are several."""
     path = word.path[1:] if len(word.path) > 1 and word.path[0] in _KINDS else word.path
     is_type = document.text[max(word.start - 9, 0) : word.start].rstrip()[-1:] == ":"
@@ -47,7 +47,7 @@ def definition_of(document: Analysis, word: Word) -> Definition | None:
     return here or min(own, key=lambda found: len(found.path), default=None)
 
 
-def _is_template(document: Analysis, found: Definition) -> bool:
+def _is_template(document: Analysis, found: NodeDefinition) -> bool:
     return document.text[found.end : found.end + 1] == "("
 
 
@@ -78,7 +78,7 @@ def _import_at(document: Analysis, offset: int) -> str | None:
     return None
 
 
-def _in_another_file(document: Analysis, word: Word) -> types.Location | None:
+def _in_another_file(document: Analysis, word: PathWord) -> types.Location | None:
     """The place of an element of an imported robot."""
     key = _element(document, word)
     origin = document.robot.origins.get(key) if document.robot is not None and key is not None else None
@@ -88,7 +88,7 @@ def _in_another_file(document: Analysis, word: Word) -> types.Location | None:
     return types.Location(Path(origin.file).resolve().as_uri(), types.Range(place, place))
 
 
-def _template_in_another_file(document: Analysis, word: Word, texts: Texts) -> types.Location | None:
+def _template_in_another_file(document: Analysis, word: PathWord, texts: Texts) -> types.Location | None:
     """The place of a template of an imported text, with the import's alias before its name or without."""
     known = document.imports()
     path = word.path[1:] if word.path[0] in known else word.path
@@ -100,7 +100,7 @@ def _template_in_another_file(document: Analysis, word: Word, texts: Texts) -> t
     return None
 
 
-def _element(document: Analysis, word: Word) -> Id | None:
+def _element(document: Analysis, word: PathWord) -> Id | None:
     """The element of the robot that a name means."""
     if document.robot is None:
         return None
@@ -143,7 +143,7 @@ def hover(document: Analysis, position: types.Position) -> types.Hover | None:
     return types.Hover(value, document.places.range(word.start, word.end))
 
 
-def _said(document: Analysis, word: Word, offset: int) -> Iterator[str]:
+def _said(document: Analysis, word: PathWord, offset: int) -> Iterator[str]:
     name = word.path[-1]
     fields = _fields(document, _kind_around(document, offset))
     if len(word.path) == 1 and name in fields:

@@ -13,7 +13,7 @@ from pygls.lsp.server import LanguageServer
 
 from hymeko_x.server import answers
 from hymeko_x.server.analysis import SEVERITIES, Analysis, analyse, analysis, path_of, unpickled, unread
-from hymeko_x.server.reader import Reader, Reading
+from hymeko_x.server.reader import ReaderProcess, TextReading
 from hymeko_x.server.renaming import rename_element
 from hymeko_x.server.workspace import Workspace
 from hymeko_x.version import __version__
@@ -30,7 +30,7 @@ class _Server(LanguageServer):
     def __init__(self) -> None:
         super().__init__("hymeko-x", __version__)
         self.known: dict[str, Analysis] = {}
-        self.reader = Reader()
+        self.reader = ReaderProcess()
         self._waiting: dict[str, asyncio.Future[None]] = {}
         self._thread = ThreadPoolExecutor(1, "reader")
 
@@ -72,7 +72,7 @@ class _Server(LanguageServer):
         """Have a text read; its diagnostics are sent before its robot is there."""
         found: list[Analysis] = []
 
-        def show(reading: Reading) -> None:
+        def show(reading: TextReading) -> None:
             found.append(analysis(uri, text, reading, self.known.get(uri)))
             loop.call_soon_threadsafe(self._show, uri, found[0])
 

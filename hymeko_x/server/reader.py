@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
 
 
-class Reading(Struct):
+class TextReading(Struct):
     """What a text says: the name of its format, its diagnostics and its robot; None where it has none."""
 
     format: str | None
@@ -32,10 +32,10 @@ class Reading(Struct):
     robot: Mechanism | None
 
 
-def read(path: str, text: str) -> Reading:
+def read(path: str, text: str) -> TextReading:
     """The text of the document at a path, whose own files are on the disk."""
     report = Report()
-    found = Reading(None, report.diagnostics, None)
+    found = TextReading(None, report.diagnostics, None)
     try:
         data = text.encode("utf-8", "surrogatepass")
         row = formats.of_input(path, data)
@@ -51,13 +51,13 @@ def read(path: str, text: str) -> Reading:
     return found
 
 
-class Reader:
+class ReaderProcess:
     """The process that reads. It starts with the first text, and again with the next one after it has ended."""
 
     def __init__(self) -> None:
         self._running: tuple[SpawnProcess, Connection] | None = None
 
-    def read(self, path: str, text: str, show: Callable[[Reading], None]) -> bytes:
+    def read(self, path: str, text: str, show: Callable[[TextReading], None]) -> bytes:
         """Have a text read as :func:`read` reads it, and show what it says without its robot; then that, pickled, or nothing.
 
         The diagnostics are there before the robot is handed over. One error is shown where reading ends the process, which writes why to
@@ -73,7 +73,7 @@ class Reader:
             self._running = None
             report = Report()
             report.error(codes.BUG, f"the process that read the text ended with exit code {process.exitcode}", Origin(path))
-            show(Reading(None, report.diagnostics, None))
+            show(TextReading(None, report.diagnostics, None))
             return b""
 
     def end(self) -> None:

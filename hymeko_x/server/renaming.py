@@ -16,7 +16,7 @@ from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.edits.text import text_with_edits
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import rename
-from hymeko_x.server.text import Places
+from hymeko_x.server.text import TextPlaces
 from hymeko_x.source import Source
 
 if TYPE_CHECKING:
@@ -99,8 +99,8 @@ def _uri(path: str) -> str:
 def edits_between(old: str, new: str) -> list[types.TextEdit]:
     """The edits that make one text another: each line that differs, or all of it where their numbers differ."""
     if old.count("\n") != new.count("\n"):
-        return [types.TextEdit(Places(old).range(0, len(old)), new)]
-    places, start, found = Places(old), 0, []
+        return [types.TextEdit(TextPlaces(old).range(0, len(old)), new)]
+    places, start, found = TextPlaces(old), 0, []
     for before, after in zip(old.split("\n"), new.split("\n"), strict=True):
         if before != after:
             found.append(types.TextEdit(places.range(start, start + len(before)), after))

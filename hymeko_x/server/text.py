@@ -18,7 +18,7 @@ _WORDS = re.compile(rf"(?P<skipped>{_SKIPPED})|(?P<path>(?:{_NAME})(?:\.(?:{_NAM
 _STEPS = re.compile(_NAME)
 
 
-class Word(NamedTuple):
+class PathWord(NamedTuple):
     """One name of a path in the text: its offsets, and the steps of the path up to it, without backticks."""
 
     start: int
@@ -26,7 +26,7 @@ class Word(NamedTuple):
     path: tuple[str, ...]
 
 
-class Places:
+class TextPlaces:
     """Offsets of a text to lines and characters (UTF-16, from 0), and back."""
 
     def __init__(self, text: str) -> None:
@@ -74,22 +74,22 @@ def _matches(text: str) -> list[re.Match[str]]:
     return list(_WORDS.finditer(text))
 
 
-def words(text: str) -> Iterator[Word]:
+def words(text: str) -> Iterator[PathWord]:
     """Every name in the text outside of comments and strings."""
     for match in _matches(text):
         if match["path"] is not None:
             yield from _words_of(match)
 
 
-def _words_of(match: re.Match[str]) -> Iterator[Word]:
+def _words_of(match: re.Match[str]) -> Iterator[PathWord]:
     """The names of a path."""
     path: tuple[str, ...] = ()
     for step in _STEPS.finditer(match["path"]):
         path = (*path, unquoted(step[0]))
-        yield Word(match.start() + step.start(), match.start() + step.end(), path)
+        yield PathWord(match.start() + step.start(), match.start() + step.end(), path)
 
 
-class Definition(NamedTuple):
+class NodeDefinition(NamedTuple):
     """A node of the text: its path of names, the offsets of its name and of all of it, its types as written, and whether it is an edge."""
 
     path: tuple[str, ...]
@@ -122,9 +122,9 @@ class _Head:
         self.depth += (mark in "([") - (mark in ")]")
 
 
-def definitions(text: str) -> Iterator[Definition]:
+def definitions(text: str) -> Iterator[NodeDefinition]:
     """The nodes of a text, whether or not it can be parsed, in the order in which they begin; an open one ends with the text."""
-    found: list[Definition | None] = []
+    found: list[NodeDefinition | None] = []
     stack: list[tuple[int, tuple[str, ...]]] = []
     head, last = _Head(), None
     for match in _matches(text):
@@ -140,7 +140,7 @@ def definitions(text: str) -> Iterator[Definition]:
                 path = (*path, *(unquoted(step) for step in _STEPS.findall(text[slice(*name)])))
                 types = "" if head.colon is None else text[head.colon + 1 : match.start()].strip()
                 first = name[0] if head.edge is None else head.edge
-                found.append(Definition(path, *_last_step(text, name), first, len(text), types, head.edge is not None))
+                found.append(NodeDefinition(path, *_last_step(text, name), first, len(text), types, head.edge is not None))
             else:
                 found.append(None)
             stack.append((len(found) - 1, path))
@@ -167,7 +167,7 @@ def _last_step(text: str, path: tuple[int, int]) -> tuple[int, int]:
     return step.span()
 
 
-def word_at(text: str, offset: int) -> Word | None:
+def word_at(text: str, offset: int) -> PathWord | None:
     """The name at an offset, or right before it."""
     found = _matches(text)
     for match in found[bisect_left(found, offset, key=re.Match.end) :]:

@@ -11,7 +11,7 @@ from hymeko_x import formats
 from hymeko_x.language.printer import print_name
 from hymeko_x.server import answers
 from hymeko_x.server.analysis import Analysis, analyse, path_of
-from hymeko_x.server.text import Definition, word_at, words
+from hymeko_x.server.text import NodeDefinition, word_at, words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -36,7 +36,7 @@ class Workspace:
                 return None
         return self._known[path] if self._known[path].is_text else None
 
-    def home(self, document: Analysis, position: types.Position) -> tuple[Analysis, Definition] | None:
+    def home(self, document: Analysis, position: types.Position) -> tuple[Analysis, NodeDefinition] | None:
         """The text in which the name at a position is defined, and its definition there."""
         word = word_at(document.text, document.places.offset(position))
         place = None if word is None else answers.definition(document, position, self.text)
@@ -83,7 +83,7 @@ class Workspace:
         }
 
 
-def _stands_at(home: Analysis, found: Definition, start: types.Position) -> bool:
+def _stands_at(home: Analysis, found: NodeDefinition, start: types.Position) -> bool:
     """Whether a definition is the one at a place: of its name, or of its line where an element of a robot has no more."""
     return home.places.position(found.start) == start or home.places.position(found.first).line == start.line
 

@@ -230,7 +230,7 @@ class Step(Struct, frozen=True):
     axis: Point | None = None
 
 
-class Spring(Struct, frozen=True):
+class SpringRange(Struct, frozen=True):
     """The lengths ``between`` which a tendon exerts no force; None: an engine computes them from the pose at rest.
 
     ``at_rest``: whether they are the length in that pose.
@@ -240,7 +240,7 @@ class Spring(Struct, frozen=True):
     at_rest: bool = True
 
 
-RELAXED = Spring()
+RELAXED = SpringRange()
 
 
 class Tendon(Struct, frozen=True):
@@ -256,7 +256,7 @@ class Tendon(Struct, frozen=True):
     mechanics: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     limits: tuple[float, float] | None = None
     force: tuple[float, float] | None = None
-    spring: Spring = RELAXED
+    spring: SpringRange = RELAXED
     curves: tuple[float, ...] | None = None
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from hymeko_x.outline import Block, Field, Outline, Style, TextFile
+from hymeko_x.outline import BlockStyle, Outline, OutlineBlock, OutlineField, TextFile
 from hymeko_x.xml.parse import parse
 
 if TYPE_CHECKING:
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.source import Source
-    from hymeko_x.xml.tree import Document, Node
+    from hymeko_x.xml.tree import XmlDocument, XmlNode
 
-STYLE = Style(">", "</{tag}>", rb"[ \t]*(?:<!--[^\n]*?-->[ \t]*)*", {b"'": b"&apos;"})
+STYLE = BlockStyle(">", "</{tag}>", rb"[ \t]*(?:<!--[^\n]*?-->[ \t]*)*", {b"'": b"&apos;"})
 TEXT = "text()"
 """The name of the field that is an element's text."""
 
@@ -30,7 +30,7 @@ def outline(source: Source, report: Report) -> Outline:
     return Outline(root, {root.file: text_file(source, document)}, root.file, STYLE)
 
 
-def text_file(source: Source, document: Document) -> TextFile:
+def text_file(source: Source, document: XmlDocument) -> TextFile:
     """The file of a document; what stands before its root, such as a byte order mark, is as the author has it."""
     read = document.root.start
     content = document.data[read:]
@@ -39,7 +39,7 @@ def text_file(source: Source, document: Document) -> TextFile:
     return TextFile(source.name, document.data, source.data.removesuffix(content), read)
 
 
-def block_of(root: Node, data: bytes, others: Mapping[str, bytes] | None = None) -> Block:
+def block_of(root: XmlNode, data: bytes, others: Mapping[str, bytes] | None = None) -> OutlineBlock:
     """The block of an element, with all that is in it. ``others`` are the bytes of elements from other files, by their names."""
     texts = others or {}
     top = _bare(root, texts.get(root.file, data))
@@ -54,23 +54,25 @@ def block_of(root: Node, data: bytes, others: Mapping[str, bytes] | None = None)
     return top
 
 
-def _bare(node: Node, data: bytes) -> Block:
+def _bare(node: XmlNode, data: bytes) -> OutlineBlock:
     """The block of an element without the blocks in it."""
     name = _NAME.match(data, node.start)
     assert name is not None, f"no element starts at {node.file}:{node.line}"
     at = first = name.end()
-    fields: dict[str, Field] = {}
+    fields: dict[str, OutlineField] = {}
     while found := _ATTRIBUTE.match(data, at):
         attribute = found[1].decode()
-        fields[attribute] = Field(node.attributes.get(attribute, ""), found.start(), found.end(), found.start(2) + 1, found.end(2) - 1)
+        fields[attribute] = OutlineField(
+            node.attributes.get(attribute, ""), found.start(), found.end(), found.start(2) + 1, found.end(2) - 1
+        )
         at = found.end()
     head = data.index(b">", at)
     if data[head - 1 : head] == b"/":
-        return Block(node.tag, node.attributes.get("name", ""), node.file, node.start, head + 1, first, head - 1, None, fields)
+        return OutlineBlock(node.tag, node.attributes.get("name", ""), node.file, node.start, head + 1, first, head - 1, None, fields)
     end = data.index(b">", node.end) + 1
     if not node.children and node.text is not None and b"<" not in data[head + 1 : node.end]:
-        fields[TEXT] = Field(node.text.strip(), head + 1, node.end, *_stripped(data, head + 1, node.end))
-    return Block(node.tag, node.attributes.get("name", ""), node.file, node.start, end, first, head, (head + 1, node.end), fields)
+        fields[TEXT] = OutlineField(node.text.strip(), head + 1, node.end, *_stripped(data, head + 1, node.end))
+    return OutlineBlock(node.tag, node.attributes.get("name", ""), node.file, node.start, end, first, head, (head + 1, node.end), fields)
 
 
 def _stripped(data: bytes, start: int, end: int) -> tuple[int, int]:

@@ -18,13 +18,13 @@ from hymeko_x.xml.tree import MAX_DEPTH, TreeBuilder
 
 if TYPE_CHECKING:
     from hymeko_x.source import Source
-    from hymeko_x.xml.tree import Document, Node
+    from hymeko_x.xml.tree import XmlDocument, XmlNode
 
 MAX_BYTES = 256 * 1024 * 1024
 _ENCODING = re.compile(rb"""\s*<\?xml[^?>]*encoding\s*=\s*["']([\w.-]+)""")
 
 
-def parse(source: Source, report: Report, *, comments: bool = False, deepest: int | None = MAX_DEPTH) -> Document:
+def parse(source: Source, report: Report, *, comments: bool = False, deepest: int | None = MAX_DEPTH) -> XmlDocument:
     """The XML of a source; ``comments`` and ``deepest`` as :class:`TreeBuilder` takes them.
 
     Raises: Refusal with HX004 (not XML), HX007 (too large or too deep), HX008 (it defines entities).
@@ -43,7 +43,7 @@ def parse(source: Source, report: Report, *, comments: bool = False, deepest: in
     return document
 
 
-def parse_text(text: str, *, namespaces: bool = False) -> Node:
+def parse_text(text: str, *, namespaces: bool = False) -> XmlNode:
     """The element that a piece of text is, with its comments. Raises: ExpatError when it is none.
 
     ``namespaces``: a prefix that is not declared is an error as well.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.ir.mechanism import Extra, Id
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 _WIDEST_INDENT = 80
 """Elements in more than 40 others are not indented further, so that the text stays linear in their number."""
@@ -159,10 +159,10 @@ def in_lines(markup: str) -> str:
     return laid_out(markup, 2, spread=True)
 
 
-def markup(node: Node) -> str:
+def markup(node: XmlNode) -> str:
     """A node with everything in it as one line of XML; of a comment its text in comment signs."""
     pieces: list[str] = []
-    stack: list[Node | str] = [node]
+    stack: list[XmlNode | str] = [node]
     while stack:
         item = stack.pop()
         if isinstance(item, str):

@@ -16,10 +16,10 @@ from hymeko_x.xml.tree import TreeBuilder
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.source import Source
-    from hymeko_x.xml.tree import Document
+    from hymeko_x.xml.tree import XmlDocument
 
 
-def read_again(source: Source, report: Report, error: expat.ExpatError, *, comments: bool, deepest: int | None) -> Document:
+def read_again(source: Source, report: Report, error: expat.ExpatError, *, comments: bool, deepest: int | None) -> XmlDocument:
     """The second try on repaired text, repair by repair; then the third with libxml2's recovery."""
     if not source.data.strip(b"\0 \t\r\n\xef\xbb\xbf"):
         raise refuse(codes.NOT_XML, "the file is empty", Origin(source.name)) from error
@@ -45,7 +45,7 @@ def read_again(source: Source, report: Report, error: expat.ExpatError, *, comme
 
 def _recover(
     source: Source, text: str, repairs: list[str], report: Report, error: expat.ExpatError, *, comments: bool, deepest: int | None
-) -> Document:
+) -> XmlDocument:
     place = _place(source, error)
     parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True, strip_cdata=False, recover=True)
     try:

@@ -29,7 +29,7 @@ INSTRUCTION_NODE = "#instruction"
 MAX_DEPTH = 2048
 
 
-class Node(Struct, eq=False):
+class XmlNode(Struct, eq=False):
     """An XML element whose attributes, children and text are taken out one by one.
 
     ``owner`` is the element of the mechanism that the node became; a node without one belongs to its parent's.
@@ -39,12 +39,12 @@ class Node(Struct, eq=False):
 
     tag: str
     attributes: dict[str, str]
-    parent: Node | None = None
+    parent: XmlNode | None = None
     file: str = ""
     line: int | None = None
     start: int = 0
     end: int = 0
-    children: list[Node] = []
+    children: list[XmlNode] = []
     taken: bool = False
     owner: Id | None = None
     text: str | None = None
@@ -72,13 +72,13 @@ class Node(Struct, eq=False):
         """False for a comment or a processing instruction."""
         return self.tag[0] != "#"
 
-    def _owning(self) -> Node:
+    def _owning(self) -> XmlNode:
         node = self
         while node.owner is None and node.parent is not None:
             node = node.parent
         return node
 
-    def walk(self) -> Iterator[Node]:
+    def walk(self) -> Iterator[XmlNode]:
         """The node and everything in it, in document order."""
         stack = [self]
         while stack:
@@ -92,7 +92,7 @@ class Node(Struct, eq=False):
         """The value of an attribute, or None when there is none."""
         return self.attributes.pop(attribute, None)
 
-    def take_child(self, tag: str) -> Node | None:
+    def take_child(self, tag: str) -> XmlNode | None:
         """The first unread child of this name, or None."""
         for child in self.children:
             if child.tag == tag and not child.taken:
@@ -100,7 +100,7 @@ class Node(Struct, eq=False):
                 return child
         return None
 
-    def take_child_of(self, tags: Container[str]) -> Node | None:
+    def take_child_of(self, tags: Container[str]) -> XmlNode | None:
         """The first unread child with one of these names, or None."""
         for child in self.children:
             if child.tag in tags and not child.taken:
@@ -108,7 +108,7 @@ class Node(Struct, eq=False):
                 return child
         return None
 
-    def take_children(self, tag: str) -> Iterator[Node]:
+    def take_children(self, tag: str) -> Iterator[XmlNode]:
         """All unread children of this name, one after the other."""
         for child in self.children:
             if child.tag == tag and not child.taken:
@@ -128,11 +128,11 @@ class Node(Struct, eq=False):
         self.attributes.clear()
         return self.take_text()
 
-    def leave(self, child: Node) -> None:
+    def leave(self, child: XmlNode) -> None:
         """Undo the taking of a child: it becomes an extra as a whole, as written."""
         child.taken = False
 
-    def detach(self, *tags: str) -> list[Node]:
+    def detach(self, *tags: str) -> list[XmlNode]:
         """Remove the children with one of these names from the tree, in order: for readers that keep what the tree still contains."""
         found = [child for child in self.children if child.tag in tags]
         if found:
@@ -149,7 +149,7 @@ class Node(Struct, eq=False):
 
     # ---- looking without taking ------------------------------------------------------------------------------------------
 
-    def child(self, tag: str) -> Node | None:
+    def child(self, tag: str) -> XmlNode | None:
         """The first child of this name, unread or not, or None."""
         for child in self.children:
             if child.tag == tag:
@@ -164,7 +164,7 @@ class Node(Struct, eq=False):
         """Whether a child of this name was taken."""
         return any(child.tag == tag and child.taken for child in self.children)
 
-    def unread_children(self) -> list[Node]:
+    def unread_children(self) -> list[XmlNode]:
         """The child elements that are unread."""
         return [child for child in self.children if not child.taken and child.is_element]
 
@@ -172,12 +172,12 @@ class Node(Struct, eq=False):
 # ---- building ----------------------------------------------------------------------------------------------------------------
 
 
-class Document(Struct, frozen=True):
+class XmlDocument(Struct, frozen=True):
     """A read file: its root, the comments and processing instructions around it, and the text that was read, in UTF-8."""
 
-    root: Node
-    preceding: tuple[Node, ...]
-    following: tuple[Node, ...]
+    root: XmlNode
+    preceding: tuple[XmlNode, ...]
+    following: tuple[XmlNode, ...]
     data: bytes
 
 
@@ -213,7 +213,7 @@ class TreeBuilder:
         self._lines = lines
         self._comments = comments
         self._deepest = deepest
-        self._open = [Node("#outside", {}, None, file, 1)]
+        self._open = [XmlNode("#outside", {}, None, file, 1)]
         parser = expat.ParserCreate()
         parser.buffer_text = True
         parser.XmlDeclHandler = self._declaration
@@ -223,7 +223,7 @@ class TreeBuilder:
         parser.ProcessingInstructionHandler = lambda target, text: self._aside(INSTRUCTION_NODE, f"{target} {text}".strip())
         self._parser = parser
 
-    def document(self) -> Document:
+    def document(self) -> XmlDocument:
         """The finished document. Raises: ExpatError where the text is not well-formed."""
         self._handle_elements()
         try:
@@ -234,11 +234,11 @@ class TreeBuilder:
         place = next(place for place, node in enumerate(around) if node.is_element)
         root = around[place]
         root.parent = None
-        return Document(root, tuple(around[:place]), tuple(around[place + 1 :]), self._data)
+        return XmlDocument(root, tuple(around[:place]), tuple(around[place + 1 :]), self._data)
 
     def _handle_elements(self) -> None:
         """The handlers of elements and text, which are called for every element: closures are quicker than methods."""
-        parser, file, lines, stack, make = self._parser, self._file, self._lines, self._open, Node
+        parser, file, lines, stack, make = self._parser, self._file, self._lines, self._open, XmlNode
         most = (self._deepest or sys.maxsize - 1) + 1
 
         def start(tag: str, attributes: dict[str, str]) -> None:
@@ -273,7 +273,7 @@ class TreeBuilder:
     def _aside(self, tag: str, text: str) -> None:
         if self._comments or len(self._open) < 3:
             around = self._open[-1]
-            node = Node(tag, {}, around, self._file, self._parser.CurrentLineNumber, self._parser.CurrentByteIndex)
+            node = XmlNode(tag, {}, around, self._file, self._parser.CurrentLineNumber, self._parser.CurrentByteIndex)
             node.text = text
             around.children.append(node)
 

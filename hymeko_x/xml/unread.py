@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.xml.tree import Document, Node
+    from hymeko_x.xml.tree import XmlDocument, XmlNode
 
 COMMENT = "comment"
 """The format of an extra that is a comment: it is the same in every format, and kept without its signs."""
@@ -27,7 +27,7 @@ FOLLOWING = "following"
 """The paths of what stands before and after the root element."""
 
 
-def unread_extras(node: Node, path: str, format_name: str, verbatim: Callable[[Node], str]) -> Iterator[Extra]:
+def unread_extras(node: XmlNode, path: str, format_name: str, verbatim: Callable[[XmlNode], str]) -> Iterator[Extra]:
     """Everything in a node that is unread, as extras; ``path`` leads to the node, and ``verbatim`` gives the text of an element."""
     for name, value in node.attributes.items():
         yield Extra(format_name, _below(path, f"@{name}"), value)
@@ -38,14 +38,14 @@ def unread_extras(node: Node, path: str, format_name: str, verbatim: Callable[[N
             yield extra_of(child, path, index, format_name, verbatim)
 
 
-def extra_of(node: Node, path: str, index: int, format_name: str, verbatim: Callable[[Node], str] = str) -> Extra:
+def extra_of(node: XmlNode, path: str, index: int, format_name: str, verbatim: Callable[[XmlNode], str] = str) -> Extra:
     """A comment, a processing instruction or an element as an extra."""
     if node.tag == COMMENT_NODE:
         return Extra(COMMENT, path, node.text or "", index)
     return Extra(format_name, path, f"<?{node.text}?>" if node.tag == INSTRUCTION_NODE else verbatim(node), index)
 
 
-def extras_around(document: Document, format_name: str) -> list[Extra]:
+def extras_around(document: XmlDocument, format_name: str) -> list[Extra]:
     """The comments and instructions before and after the root element."""
     before = [extra_of(node, PRECEDING, place, format_name) for place, node in enumerate(document.preceding)]
     return before + [extra_of(node, FOLLOWING, place, format_name) for place, node in enumerate(document.following)]
@@ -54,7 +54,7 @@ def extras_around(document: Document, format_name: str) -> list[Extra]:
 class Unread:
     """Collects what is unread in a file, whose bytes are ``data`` in UTF-8, element by element; elements keep their text."""
 
-    def __init__(self, root: Node, data: bytes, format_name: str, report: Report) -> None:
+    def __init__(self, root: XmlNode, data: bytes, format_name: str, report: Report) -> None:
         self._root = root
         self._report = report
         self._data = data
@@ -62,7 +62,7 @@ class Unread:
         self._found: dict[Id, list[Extra]] = {}
         self._owners: dict[int, Id] = {}
 
-    def close(self, node: Node) -> list[Node]:
+    def close(self, node: XmlNode) -> list[XmlNode]:
         """Collect what is unread in a child of the root. Returns its nodes in which child elements are unread."""
         if node.owner is not None:
             self._owners[node.start] = node.owner
@@ -82,7 +82,7 @@ class Unread:
                 self._keep(member)
         return with_unread_children
 
-    def _keep(self, node: Node) -> None:
+    def _keep(self, node: XmlNode) -> None:
         for name in list(node.attributes):
             self._declare_prefix(node, name)
         owner, path = _place_below_owner(node)
@@ -106,7 +106,7 @@ class Unread:
 
     # ---- text of elements ------------------------------------------------------------------------------------------------
 
-    def verbatim(self, node: Node) -> str:
+    def verbatim(self, node: XmlNode) -> str:
         """The element as the file has it but for its layout, with the namespace declarations that it needs from further up."""
         self._declare_prefixes(node)
         end = node.end
@@ -118,7 +118,7 @@ class Unread:
         text = laid_out(text, 1 if is_outer else 2)
         return with_declared(text, _declared_above(node)) if ":" in text else text
 
-    def _declare_prefixes(self, node: Node) -> None:
+    def _declare_prefixes(self, node: XmlNode) -> None:
         """Declare at the root the prefixes in an element that are declared nowhere."""
         if self._data.find(b":", node.start, node.end) < 0:
             return
@@ -127,11 +127,11 @@ class Unread:
             for name in member.attributes:
                 self._declare_prefix(member, name)
 
-    def _declare_prefix(self, node: Node, name: str) -> None:
+    def _declare_prefix(self, node: XmlNode, name: str) -> None:
         prefix, colon, _ = name.partition(":")
         if not colon or prefix in ("xml", "xmlns"):
             return
-        above: Node | None = node
+        above: XmlNode | None = node
         while above is not None and f"xmlns:{prefix}" not in above.attributes:
             above = above.parent
         if above is None:
@@ -145,7 +145,7 @@ def _by_place(extra: Extra) -> tuple[bool, str, int]:
     return extra.path == "", extra.path, extra.index
 
 
-def _place_below_owner(node: Node) -> tuple[Id, str]:
+def _place_below_owner(node: XmlNode) -> tuple[Id, str]:
     """Whose the node is, and the path from that element to it; repeated steps are numbered: ``joint[2]``."""
     path = ""
     while node.owner is None and node.parent is not None:
@@ -154,7 +154,7 @@ def _place_below_owner(node: Node) -> tuple[Id, str]:
     return node.owner or ROOT, path
 
 
-def _step(node: Node, parent: Node) -> str:
+def _step(node: XmlNode, parent: XmlNode) -> str:
     number = 1
     for child in parent.children:
         if child is node:
@@ -167,7 +167,7 @@ def _below(path: str, step: str) -> str:
     return f"{path}/{step}" if path else step
 
 
-def _declared_above(node: Node) -> dict[str, str]:
+def _declared_above(node: XmlNode) -> dict[str, str]:
     """The namespaces (attribute -> uri) that the elements around a node declare, the innermost ones first."""
     found: dict[str, str] = {}
     above = node.parent

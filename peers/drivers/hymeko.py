@@ -29,7 +29,7 @@ def work(job: dict[str, Any]) -> None:
 
 def _write(source: str, out: str) -> None:
     files = DiskFiles(Path(source).parent)
-    place = pipeline.Place(str(Path(out).parent))
+    place = pipeline.OutputPlace(str(Path(out).parent))
     package = pipeline.write(hx.load(source).mechanism, formats.of_output(out), Options(), files, Report(), place)
     disk.write_package(package, out, files)
 

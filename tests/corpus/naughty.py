@@ -14,7 +14,7 @@ from msgspec.structs import asdict
 
 from hymeko_x.corpus.cases import Case
 from hymeko_x.corpus.plan import Plan, set_limits
-from hymeko_x.corpus.rows import Cost, Leg, Robot
+from hymeko_x.corpus.rows import Cost, Leg, RobotRow
 from hymeko_x.corpus.work import NOTES
 
 
@@ -38,7 +38,7 @@ def note_modules(case: Case, plan: Plan, folder: str, scratch: str, steps: Seque
 
 def said_at(case: Case, step: str) -> dict[str, object]:
     if step == "read":
-        return asdict(Robot(case.key, case.package, case.format))
+        return asdict(RobotRow(case.key, case.package, case.format))
     if step == "engine":
         return {"engine": "done", "engine_reason": ""}
     return asdict(Leg(case.key, case.format, step.partition(":")[2], verdict="same"))

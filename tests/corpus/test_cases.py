@@ -12,7 +12,7 @@ from hymeko_x.corpus import catalog, engines
 from hymeko_x.corpus.cases import from_folder, own_robots
 from hymeko_x.corpus.lengths import lengths
 from hymeko_x.corpus.plan import Plan, pairs_of
-from hymeko_x.corpus.rows import Leg, Outcome, Robot
+from hymeko_x.corpus.rows import Leg, Outcome, RobotRow
 from hymeko_x.corpus.statistics import interval, signed_rank
 from hymeko_x.corpus.store import Store
 from hymeko_x.corpus.work import counted
@@ -66,7 +66,7 @@ def test_a_url_gives_a_package_for_each_of_its_folders_and_is_fetched_once(tmp_p
 def test_results_may_be_kept_behind_a_url() -> None:
     store = Store("memory://results-of-a-test")
     store.open(Plan((("urdf", "mjcf"),)).as_json(), resume=False)
-    outcome = Outcome(Robot("p/a", "p", "urdf", diagnostics={"HX001": 2}), (Leg("p/a", "urdf", "mjcf", lost={"body": 1}),), ())
+    outcome = Outcome(RobotRow("p/a", "p", "urdf", diagnostics={"HX001": 2}), (Leg("p/a", "urdf", "mjcf", lost={"body": 1}),), ())
     store.add(outcome)
     assert list(store.outcomes()) == [outcome]
 
@@ -120,5 +120,5 @@ def test_the_signed_rank_test_is_that_of_the_textbook() -> None:
 
 def test_a_file_is_counted_in_bodies_joints_dofs_and_shapes() -> None:
     mechanism = hx.loads(MJCF, "mjcf").mechanism
-    robot = counted(Robot("k", "p", "mjcf"), mechanism, Report())
+    robot = counted(RobotRow("k", "p", "mjcf"), mechanism, Report())
     assert (robot.bodies, robot.joints, robot.dofs, robot.shapes) == (1, 1, 1, 1)

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 
 from hymeko_x.corpus.cases import Case
-from hymeko_x.corpus.plan import Limits, Plan
+from hymeko_x.corpus.plan import Plan, ProcessLimits
 from hymeko_x.corpus.rows import Leg, Outcome
 from hymeko_x.corpus.supervise import Processes, preloaded, supervise
 from tests.corpus.naughty import misbehave
 
-PLAN = Plan((("urdf", "hymeko"), ("urdf", "mjcf")), limits=Limits(seconds=5.0, bytes=3 * 2**30))
+PLAN = Plan((("urdf", "hymeko"), ("urdf", "mjcf")), limits=ProcessLimits(seconds=5.0, bytes=3 * 2**30))
 
 
 def outcome(tmp_path: Path, name: str) -> Outcome:

@@ -15,7 +15,7 @@ from hymeko_x import api, codes
 from hymeko_x.cli import main
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.draw.files import film
-from hymeko_x.draw.render import Look, choose_backend, open_studio
+from hymeko_x.draw.render import PictureOptions, choose_backend, open_studio
 
 ARM = """<robot name="arm">
   <material name="red"><color rgba="0.8 0.2 0.1 1"/></material>
@@ -41,9 +41,9 @@ def _can_draw() -> None:
 
 
 @functools.cache
-def picture(text: str, format: str = "urdf", **look: object) -> np.ndarray:
+def picture(text: str, format: str = "urdf", **wanted: object) -> np.ndarray:
     robot = api.loads(text, format).mechanism
-    return open_studio(robot, None, Look(**{"size": SIZE, **look})).still()  # type: ignore[arg-type]
+    return open_studio(robot, None, PictureOptions(**{"size": SIZE, **wanted})).still()  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("scale", [0.01, 50.0])
@@ -119,7 +119,7 @@ def test_what_cannot_be_drawn_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("suffix", "magic"), [(".gif", b"GIF89a"), (".mp4", b"ftyp")])
 def test_a_film_shows_the_joints_move(suffix: str, magic: bytes) -> None:
-    pictures = [*open_studio(api.loads(ARM, "urdf").mechanism, None, Look(size=(64, 48))).sweep()]
+    pictures = [*open_studio(api.loads(ARM, "urdf").mechanism, None, PictureOptions(size=(64, 48))).sweep()]
     assert any(np.any(pictures[0] != later) for later in pictures[1:])
     assert magic in film(pictures, suffix)[:16]
 

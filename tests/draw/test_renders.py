@@ -16,10 +16,10 @@ from benchmarks import renders
 from hymeko_x import api, codes, formats
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.draw.pair import Subject, pair
-from hymeko_x.draw.render import Look, choose_backend
+from hymeko_x.draw.render import PictureOptions, choose_backend
 from hymeko_x.robot import Robot
 
-LOOK = Look((240, 180))
+OPTIONS = PictureOptions((240, 180))
 FOOT = """v 0 0 0
 v 0.4 0 0
 v 0.4 0.1 0
@@ -67,7 +67,7 @@ def leg(tmp_path: Path) -> Path:
 def changed(a: Path, b: Path) -> float:
     """The part of the pixels in which two robots differ that MuJoCo reads itself."""
     first, second = (Subject(Robot.__new__(Robot), str(path)) for path in (a, b))
-    return pair(first, second, LOOK).changed
+    return pair(first, second, OPTIONS).changed
 
 
 @pytest.mark.parametrize(
@@ -161,7 +161,7 @@ def through_urdf(body: str, folder: Path) -> float:
     (folder / "a.xml").write_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>")
     robot = api.load(folder / "a.xml")
     api.dump(robot, folder / "a.urdf", "urdf")
-    return pair(Subject(robot, str(folder / "a.xml")), Subject(api.load(folder / "a.urdf"), None), LOOK).changed
+    return pair(Subject(robot, str(folder / "a.xml")), Subject(api.load(folder / "a.urdf"), None), OPTIONS).changed
 
 
 def test_a_joint_with_a_reference_is_drawn_where_it_is_in_the_first_robot(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from hymeko_x.cli import exits, main
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.draw.comparison.facts import Side
 from hymeko_x.draw.view.gate import COOKIE, Gate
-from hymeko_x.draw.view.motion import Motion
+from hymeko_x.draw.view.motion import PosedRobot
 from hymeko_x.draw.view.scene import ellipsoid_of, scene_of
 from hymeko_x.robot import Robot
 from hymeko_x.verify import verify
@@ -107,7 +107,7 @@ def api_open(text: str, format: str) -> Robot:
 @pytest.mark.parametrize("angle", [-1.0, 0.3, 1.0])
 def test_a_slider_moves_bodies_where_forward_kinematics_has_them(angle: float) -> None:
     robot = api_open(ARM, "urdf")
-    motion = Motion(scene_of(robot).model)
+    motion = PosedRobot(scene_of(robot).model)
     (slider,) = motion.sliders
     assert slider[1:] == ("joint 'turn'", -1.0, 1.0, 0.0, "rad")
     assert motion.move(slider.dof, angle)
@@ -118,20 +118,20 @@ def test_a_slider_moves_bodies_where_forward_kinematics_has_them(angle: float) -
 
 
 def test_a_loop_stays_closed_and_a_slider_that_would_open_it_stays() -> None:
-    motion = Motion(scene_of(api_open(BARS, "mjcf")).model)
+    motion = PosedRobot(scene_of(api_open(BARS, "mjcf")).model)
     drive = motion.sliders[0]
     for angle in np.linspace(0.0, 0.7, 8):
         assert motion.move(drive.dof, float(angle))
         poses = motion.poses()
         ends = [poses[loop.body][:3] @ np.append(loop.at[:3, 3], 1.0) for loop in _ends(motion)]
         assert ends[0] == pytest.approx(ends[1], abs=1e-6)
-    stretched = Motion(scene_of(api_open(BARS.replace('pos="0.4 0 0"', 'pos="0.55 0 0"'), "mjcf")).model)
+    stretched = PosedRobot(scene_of(api_open(BARS.replace('pos="0.4 0 0"', 'pos="0.55 0 0"'), "mjcf")).model)
     before = stretched.q.copy()
     assert not stretched.move(drive.dof, -3.0), "the rod does not reach that far"
     assert (stretched.q == before).all()
 
 
-def _ends(motion: Motion) -> Sequence[object]:
+def _ends(motion: PosedRobot) -> Sequence[object]:
     from types import SimpleNamespace
 
     (loop,) = motion.model.loops

@@ -89,7 +89,7 @@ def test_a_real_robot_keeps_its_bytes(robot: Path) -> None:
     source = disk.open_source(str(robot))
     format = formats.of_input(source.name, source.data)
     mechanism = pipeline.read(source, format, Report())
-    beside = copied(source, format, mechanism, pipeline.Place(str(robot.parent)), Report())
+    beside = copied(source, format, mechanism, pipeline.OutputPlace(str(robot.parent)), Report())
     assert beside is not None
     assert (beside.main, beside.files, beside.copies) == (source.data, {}, {})
 

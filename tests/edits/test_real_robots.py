@@ -60,7 +60,7 @@ class Converted(NamedTuple):
     source: Source
     format: Format
     there: Format
-    place: pipeline.Place
+    place: pipeline.OutputPlace
     package: Package
 
     def edited(self, text: str) -> Source:
@@ -85,7 +85,7 @@ def converted(robot: Path, target: str) -> Converted:
     source = disk.open_source(str(robot))
     format = formats.of_input(source.name, source.data)
     there = formats.by_name("usd" if target == format.name else target)
-    place = pipeline.Place(str(robot.parent), "reference")
+    place = pipeline.OutputPlace(str(robot.parent), "reference")
     mechanism = pipeline.read(source, format, Report())
     return Converted(source, format, there, place, pipeline.write(mechanism, there, Options(), source.files, Report(), place))
 

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from hymeko_x.factor.forms import Call, Dialect, Element, Factored, Hole, Item, Macro, Parameter, Piece, Signed, Text, expand
+from hymeko_x.factor.forms import Call, Dialect, Factored, FormElement, Hole, Item, Macro, MacroParameter, Piece, Signed, Text, expand
 from hymeko_x.factor.rounds import factor
 from tests.pace import assert_at_most
 
@@ -32,8 +32,8 @@ TEXTS = (
 LEAVES = st.lists(st.tuples(st.sampled_from(["name", "xyz", "value"]), TEXTS), max_size=3, unique_by=lambda leaf: leaf[0]).map(tuple)
 
 
-def element(tag: str, leaves: tuple[tuple[str, str], ...], children: list[Element] | None = None) -> Element:
-    return Element(tag, leaves, tuple(children or ()))
+def element(tag: str, leaves: tuple[tuple[str, str], ...], children: list[FormElement] | None = None) -> FormElement:
+    return FormElement(tag, leaves, tuple(children or ()))
 
 
 FORMS = st.recursive(
@@ -44,18 +44,18 @@ FORMS = st.recursive(
 
 
 @st.composite
-def repetitive(draw: st.DrawFn) -> tuple[Element, ...]:
+def repetitive(draw: st.DrawFn) -> tuple[FormElement, ...]:
     """Forms of which many are equal or nearly equal."""
     stock = draw(st.lists(FORMS, min_size=1, max_size=4))
     picked = draw(st.lists(st.sampled_from(stock), max_size=14))
     return tuple(_changed(form, draw(st.sampled_from(["", "", "left", "right"])), draw(st.booleans())) for form in picked)
 
 
-def _changed(form: Element, word: str, flip: bool) -> Element:
+def _changed(form: FormElement, word: str, flip: bool) -> FormElement:
     leaves = tuple(
         (name, _flipped(text) if flip and name == "xyz" else f"{word}{text}" if name == "name" else text) for name, text in form.leaves
     )
-    return form._replace(leaves=leaves, children=tuple(_changed(kid, word, flip) for kid in form.children if isinstance(kid, Element)))
+    return form._replace(leaves=leaves, children=tuple(_changed(kid, word, flip) for kid in form.children if isinstance(kid, FormElement)))
 
 
 def _flipped(text: object) -> str:
@@ -69,7 +69,7 @@ def _flipped(text: object) -> str:
 )
 @given(repetitive())
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-def test_expanding_gives_back_exactly_what_was_factored(dialect: Dialect, forms: tuple[Element, ...]) -> None:
+def test_expanding_gives_back_exactly_what_was_factored(dialect: Dialect, forms: tuple[FormElement, ...]) -> None:
     found = factor(forms, dialect)
     assert expand(found) == forms
     assert factor(forms, dialect) == found
@@ -77,7 +77,7 @@ def test_expanding_gives_back_exactly_what_was_factored(dialect: Dialect, forms:
 
 @given(repetitive())
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-def test_what_is_factored_is_never_longer(forms: tuple[Element, ...]) -> None:
+def test_what_is_factored_is_never_longer(forms: tuple[FormElement, ...]) -> None:
     assert size(factor(forms, Dialect())) <= size(Factored(forms))
 
 
@@ -91,7 +91,7 @@ def size(factored: Factored) -> int:
         said = item.arguments if isinstance(item, Call) else item.leaves
         total += 9 + len(item.macro) if isinstance(item, Call) else 3 + len(item.tag)
         total += sum(len(name) + 3 + sum(map(letters, (text,) if isinstance(text, str) else text)) for name, text in said)
-        if isinstance(item, Element) and item.children:
+        if isinstance(item, FormElement) and item.children:
             total += 2 + len(item.tag)
             stack += item.children
     return total
@@ -116,17 +116,19 @@ def limb(draw: st.DrawFn) -> list[tuple[str, float, float]]:
     return [(name, mass / 7, offset / 9) for name, mass, offset in zip(names, masses, offsets, strict=False)]
 
 
-def instance(segments: list[tuple[str, float, float]], prefix: str, side: int) -> list[Element]:
+def instance(segments: list[tuple[str, float, float]], prefix: str, side: int) -> list[FormElement]:
     """A limb, its names with a prefix and its offsets mirrored."""
     forms = []
     for name, mass, offset in segments:
-        inertial = Element(
-            "inertial", (), (Element("mass", (("value", repr(mass)),)), Element("com", (("xyz", f"0 {side * offset!r} 0.25"),)))
+        inertial = FormElement(
+            "inertial", (), (FormElement("mass", (("value", repr(mass)),)), FormElement("com", (("xyz", f"0 {side * offset!r} 0.25"),)))
         )
-        forms.append(Element("link", (("name", f"{prefix}_{name}"),), (inertial,)))
+        forms.append(FormElement("link", (("name", f"{prefix}_{name}"),), (inertial,)))
         forms.append(
-            Element(
-                "joint", (("name", f"{prefix}_{name}_joint"), ("type", "revolute")), (Element("child", (("link", f"{prefix}_{name}"),)),)
+            FormElement(
+                "joint",
+                (("name", f"{prefix}_{name}_joint"), ("type", "revolute")),
+                (FormElement("child", (("link", f"{prefix}_{name}"),)),),
             )
         )
     return forms
@@ -136,9 +138,9 @@ def macro(segments: list[tuple[str, float, float]]) -> Macro:
     """The macro that a person would have written for a limb."""
     marked = instance(segments, "PREFIX", -1)
 
-    def open_up(form: Element) -> Element:
+    def open_up(form: FormElement) -> FormElement:
         leaves = tuple((name, opened(str(text))) for name, text in form.leaves)
-        return Element(form.tag, leaves, tuple(open_up(kid) for kid in form.children if isinstance(kid, Element)))
+        return FormElement(form.tag, leaves, tuple(open_up(kid) for kid in form.children if isinstance(kid, FormElement)))
 
     def opened(text: str) -> Text:
         if text.startswith("PREFIX"):
@@ -146,7 +148,7 @@ def macro(segments: list[tuple[str, float, float]]) -> Macro:
         words = text.split(" ")
         return ("0 ", Signed(("side",), False, words[1].removeprefix("-")), " 0.25") if len(words) == 3 else text
 
-    return Macro("limb", (Parameter("prefix"), Parameter("side")), tuple(map(open_up, marked)))
+    return Macro("limb", (MacroParameter("prefix"), MacroParameter("side")), tuple(map(open_up, marked)))
 
 
 @given(
@@ -162,11 +164,11 @@ def macro(segments: list[tuple[str, float, float]]) -> Macro:
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_planted_limbs_are_found(segments: list[tuple[str, float, float]], legs: list[tuple[str, int]], data: st.DataObject) -> None:
     """The result is about as short as with the macro that was planted, wherever other forms stand between the limbs."""
-    forms: list[Element] = []
+    forms: list[FormElement] = []
     planted: list[Item] = []
     for number, (prefix, side) in enumerate(legs):
         if data.draw(st.booleans()):
-            forms.append(Element(f"other{number}", (("text", "between"),)))
+            forms.append(FormElement(f"other{number}", (("text", "between"),)))
             planted.append(forms[-1])
         planted.append(Call("limb", (("prefix", prefix), ("side", str(side)))))
         forms += instance(segments, prefix, side)

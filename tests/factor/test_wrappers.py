@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from hymeko_x.factor.flat import Form, OpenMacro, Workspace
-from hymeko_x.factor.forms import Dialect, Element, Hole, expand
+from hymeko_x.factor.flat import FactoringState, Form, OpenMacro
+from hymeko_x.factor.forms import Dialect, FormElement, Hole, expand
 from hymeko_x.factor.rounds import factor
 from hymeko_x.factor.words import limb_of_most
 from hymeko_x.factor.wrappers import tidy
@@ -17,7 +17,7 @@ def call(tag: str, *texts: object) -> Form:
 
 def test_a_macro_that_only_calls_another_one_is_inlined_and_the_number_of_that_one_goes() -> None:
     """Its calls, also those in other macros, are calls of the other macro with the same texts."""
-    workspace = Workspace([call("part", "0.1"), call("part2", "0 0.2", "3")])
+    workspace = FactoringState([call("part", "0.1"), call("part2", "0 0.2", "3")])
     workspace.macros = {
         "part2": OpenMacro("part2", ("at", "mass"), (None, None), [Form("part", ("at",), ((Hole("at"),),))]),
         "part": OpenMacro("part", ("at",), (None,), [call("part2", ("0 ", Hole("at")), "1")]),
@@ -31,13 +31,15 @@ def test_a_macro_that_only_calls_another_one_is_inlined_and_the_number_of_that_o
 
 
 def test_macros_of_one_tag_are_told_apart_by_what_is_in_them() -> None:
-    def visual(kind: str, name: str, text: str) -> Element:
-        shape = Element("geometry", (), (Element(kind, ((name, text),)),))
-        return Element("visual", (), (shape, Element("material", (("name", "black"),)), Element("layer", (("number", "12345"),))))
+    def visual(kind: str, name: str, text: str) -> FormElement:
+        shape = FormElement("geometry", (), (FormElement(kind, ((name, text),)),))
+        return FormElement(
+            "visual", (), (shape, FormElement("material", (("name", "black"),)), FormElement("layer", (("number", "12345"),)))
+        )
 
     meshes = [visual("mesh", "file", f"{place}.stl") for place in "abcdef"]
     boxes = [visual("box", "size", f"0 0 {place}") for place in range(6)]
-    forms = (Element("robot", (), (*meshes, *boxes)),)
+    forms = (FormElement("robot", (), (*meshes, *boxes)),)
     found = factor(forms, DIALECT)
     assert expand(found) == forms
     assert sorted(macro.name for macro in found.macros if "visual" in macro.name) == ["box_visual", "visual"]

@@ -23,7 +23,7 @@ from pygls.lsp.client import LanguageClient
 
 from hymeko_x.server import answers
 from hymeko_x.server.analysis import Analysis, analyse, unread
-from hymeko_x.server.reader import Reader, Reading, read
+from hymeko_x.server.reader import ReaderProcess, TextReading, read
 from hymeko_x.server.workspace import Workspace
 from tests.pace import assert_at_most
 from tests.robot.robots import ARM, URDF_HAND
@@ -346,8 +346,8 @@ def test_questions_are_answered_while_a_long_text_is_read(tmp_path: Path) -> Non
 
 @pytest.mark.unread("HX901", "HX060")
 def test_a_text_that_ends_the_process_that_reads_is_an_error_and_the_next_one_is_read(tmp_path: Path) -> None:
-    reader, path = Reader(), str(tmp_path / "arm.hymeko")
-    shown: list[Reading] = []
+    reader, path = ReaderProcess(), str(tmp_path / "arm.hymeko")
+    shown: list[TextReading] = []
     robot = reader.read(path, "arm : robot { base { mass 1 } }", shown.append)
     assert replace(shown.pop(), robot=pickle.loads(robot)) == read(path, "arm : robot { base { mass 1 } }")
     (process,) = (child for child in multiprocessing.active_children() if isinstance(child, multiprocessing.context.SpawnProcess))

@@ -7,7 +7,7 @@ from xml.sax.saxutils import quoteattr
 
 from msgspec import Struct
 
-from hymeko_x.formats.mjcf.schema import Kind, attributes_of, kinds_of, schema
+from hymeko_x.formats.mjcf.schema import AttributeKind, attributes_of, kinds_of, schema
 from tests.mjcf.make_schema import BESIDE
 
 UNASKED = (
@@ -82,7 +82,7 @@ class Place(Struct, frozen=True):
 
     path: str
     name: str
-    kind: Kind
+    kind: AttributeKind
 
     @property
     def plain(self) -> str:

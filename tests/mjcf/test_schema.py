@@ -7,13 +7,13 @@ import warnings
 
 import pytest
 
-from hymeko_x.formats.mjcf.schema import Kind, kinds_of, schema
+from hymeko_x.formats.mjcf.schema import AttributeKind, kinds_of, schema
 from tests.mjcf import make_schema
 
 SECTIONS = sorted({path.partition("/")[0] for path in schema().elements if not path.startswith(make_schema.UNASKED)})
 
 
-def values_of(kind: Kind) -> tuple[list[str], list[str]]:
+def values_of(kind: AttributeKind) -> tuple[list[str], list[str]]:
     """Values that are right, and values that are wrong in their form."""
     if kind.words:
         return [*sorted(kind.words)], ["zz", *([] if kind.several else [""])]

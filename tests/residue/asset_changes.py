@@ -192,7 +192,7 @@ def shown(robot: Robot, target: str) -> tuple[object, ...]:
     try:
         format = formats.of_input(robot.name, robot.text.encode())
         source = Source(robot.name, robot.text.encode(), files)
-        result = pipeline.convert(pipeline.read(source, format, report), row, Options(), files, report, pipeline.Place(assets="copy"))
+        result = pipeline.convert(pipeline.read(source, format, report), row, Options(), files, report, pipeline.OutputPlace(assets="copy"))
     except Refusal as refusal:
         return ("refused", refusal.diagnostic.message)
     package = result.package

@@ -9,15 +9,15 @@ import pytest
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Capsule, Cylinder, Role, Shape, Sphere
-from hymeko_x.residue import Element, Residue
+from hymeko_x.residue import Residue, WholeElement
 from hymeko_x.residue.parts import capsules_of
 
 if TYPE_CHECKING:
     from hymeko_x.ir.parts import Geometry
 
 
-def element(name: str, geometry: Geometry) -> Element:
-    return Element(Id("shape", name), Edge(Shape(geometry, Role.VISUAL), (Arc(Id("body", "leg"), 1),)))
+def element(name: str, geometry: Geometry) -> WholeElement:
+    return WholeElement(Id("shape", name), Edge(Shape(geometry, Role.VISUAL), (Arc(Id("body", "leg"), 1),)))
 
 
 @pytest.mark.parametrize("balls", range(4))

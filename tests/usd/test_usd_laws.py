@@ -40,7 +40,7 @@ def test_every_legal_mechanism_is_a_stage_that_the_rules_have_nothing_against(me
     robot = robot_of_network(own_words, formats.by_name("usd"), Report())
     legal = legalize(choose(robot, options, Report()), "usd", Report())
     package = pipeline.write(
-        own_words, formats.by_name("usd"), replace(options, lenient=True), NoFiles(), Report(), pipeline.Place(assets="reference")
+        own_words, formats.by_name("usd"), replace(options, lenient=True), NoFiles(), Report(), pipeline.OutputPlace(assets="reference")
     )
     stage.write_bytes(package.main)
     assert [said for said in complaints(stage) if not any(name in said for name in SAID_ALL_THE_SAME)] == []

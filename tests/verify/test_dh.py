@@ -10,7 +10,7 @@ import pytest
 from hymeko_x.verify import dh
 from hymeko_x.verify.checks.chains import signature
 from hymeko_x.verify.dh import Convention
-from hymeko_x.verify.dh.lines import Frame, Line, Link
+from hymeko_x.verify.dh.lines import AxisLine, DhFrame, DhLink
 from hymeko_x.verify.model import Array, Body, Dof, Joint, Kind, KinematicModel, world_body
 from hymeko_x.verify.pinocchio import build
 from hymeko_x.verify.spatial import random_quats, rigid, rotation_about, rotation_from_quat
@@ -94,8 +94,8 @@ def test_tables_of_ten_thousand_random_chains_are_exact() -> None:
     assert max(errors) < 1e-9
 
 
-def as_lines(lines: list[tuple[Kind, Array, Array]]) -> list[Line]:
-    return [Line(tuple(point.tolist()), tuple(axis.tolist()), sliding=kind is Kind.SLIDE) for kind, point, axis in lines]
+def as_lines(lines: list[tuple[Kind, Array, Array]]) -> list[AxisLine]:
+    return [AxisLine(tuple(point.tolist()), tuple(axis.tolist()), sliding=kind is Kind.SLIDE) for kind, point, axis in lines]
 
 
 def moved(lines: list[tuple[Kind, Array, Array]], by: Array, rng: np.random.Generator) -> list[tuple[Kind, Array, Array]]:
@@ -107,7 +107,7 @@ def moved(lines: list[tuple[Kind, Array, Array]], by: Array, rng: np.random.Gene
     return out
 
 
-def distance(a: tuple[Link, ...], b: tuple[Link, ...]) -> float:
+def distance(a: tuple[DhLink, ...], b: tuple[DhLink, ...]) -> float:
     """The largest difference of two signatures; angles on the circle."""
     lengths = [abs(x.d - y.d) + abs(x.a - y.a) for x, y in zip(a, b, strict=True)]
     angles = [
@@ -122,8 +122,8 @@ def test_the_canonical_form_does_not_depend_on_frames() -> None:
         rng = np.random.default_rng(seed)
         lines = random_lines(rng, int(rng.integers(1, 9)))
         tip, by = random_pose(rng), random_pose(rng)
-        here = signature(as_lines(lines), Frame.of(tip))
-        there = signature(as_lines(moved(lines, by, rng)), Frame.of(by @ tip))
+        here = signature(as_lines(lines), DhFrame.of(tip))
+        there = signature(as_lines(moved(lines, by, rng)), DhFrame.of(by @ tip))
         assert distance(here, there) < 1e-6, seed
 
 
@@ -137,7 +137,7 @@ def test_the_canonical_form_tells_robots_apart() -> None:
         kind, point, axis = lines[hinge]
         off = np.cross(axis, [0.3, 0.5, 0.7])
         changed = [*lines[:hinge], (kind, point + 1e-3 * off, axis), *lines[hinge + 1 :]]
-        told_apart += distance(signature(as_lines(lines), Frame.of(tip)), signature(as_lines(changed), Frame.of(tip))) > 1e-5
+        told_apart += distance(signature(as_lines(lines), DhFrame.of(tip)), signature(as_lines(changed), DhFrame.of(tip))) > 1e-5
     assert told_apart > 180  # in a few of them only the tip moves, which a signature leaves out
 
 

@@ -12,7 +12,7 @@ from pxr import Sdf, Usd
 import hymeko_x as hx
 from hymeko_x.corpus import catalog
 from hymeko_x.verify import model_of, verify
-from hymeko_x.verify.model import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, Spring, Step, Tendon
+from hymeko_x.verify.model import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SpringRange, Step, Tendon
 from tests.usd.stages import HEADER
 
 Write = Callable[[str, str], Path]
@@ -88,7 +88,7 @@ def test_a_tendon_of_a_stage_is_read_in_its_units(written: Write) -> None:
     ]
     assert cable.path[1].axis == (1.0, 0.0, 0.0)
     assert (cable.mechanics, cable.limits, cable.force) == ((3.0, 0.0, 0.07, 0.0), (0.0, 2.0), None)
-    assert cable.spring == Spring((0.5, 0.6), at_rest=False)
+    assert cable.spring == SpringRange((0.5, 0.6), at_rest=False)
     assert total == Tendon("Σ", (Step(JOINT, 0, 2.5),), force=(-0.02, 0.0))
 
 

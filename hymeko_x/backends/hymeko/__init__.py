@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.backends.hymeko.assemblies import Instance, assemblies, pieces_of, templates
+from hymeko_x.backends.hymeko.assemblies import PieceInstance, assemblies, pieces_of, templates
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
 from hymeko_x.backends.hymeko.extras import foreign_items, is_standing, standing_items, without_namespaces
 from hymeko_x.backends.hymeko.implied import fits_in, implied_actuators
@@ -180,8 +180,8 @@ def _assembled(pieces: Sequence[Piece], given: Given) -> list[Item]:
     """The stereotypes and templates, then the pieces: as they are, in assemblies, or as instances."""
     taken = {*standard_templates(), *RESERVED, *given}  # a template must not stand before a type
     defined, placed = templates(pieces, taken)
-    blocks = [*(node.items for node in defined), *(() if isinstance(piece, Instance) else piece.items for piece in placed)]
-    homes = ["" if isinstance(piece, Node | Instance) else piece.home for piece in placed]
+    blocks = [*(node.items for node in defined), *(() if isinstance(piece, PieceInstance) else piece.items for piece in placed)]
+    homes = ["" if isinstance(piece, Node | PieceInstance) else piece.home for piece in placed]
     owners = [home for block, home in zip(blocks, [*("" for _ in defined), *homes], strict=True) for _ in block]
     items = with_stereotypes([item for block in blocks for item in block], taken, given, owners)
     first = len(items) - sum(map(len, blocks))
@@ -189,7 +189,7 @@ def _assembled(pieces: Sequence[Piece], given: Given) -> list[Item]:
     for block, piece in zip(blocks, (*defined, *placed), strict=True):
         inner = tuple(items[first : first + len(block)])
         first += len(block)
-        if isinstance(piece, Instance):
+        if isinstance(piece, PieceInstance):
             found.append(piece.node)
         elif isinstance(piece, Node):
             found.append(piece._replace(items=inner))

@@ -59,7 +59,7 @@ class Piece(NamedTuple):
     items: tuple[Item, ...]
 
 
-class Instance(NamedTuple):
+class PieceInstance(NamedTuple):
     """A piece as an instance of a template."""
 
     node: Node
@@ -186,10 +186,10 @@ class _Leaf(NamedTuple):
     field: str
 
 
-def templates(pieces: Sequence[Piece], taken: set[str]) -> tuple[list[Node], list[Piece | Instance]]:
+def templates(pieces: Sequence[Piece], taken: set[str]) -> tuple[list[Node], list[Piece | PieceInstance]]:
     """The templates, whose names are added to ``taken``, and the pieces with instances where there is one."""
     found: list[Node] = []
-    done: list[Piece | Instance] = list(pieces)
+    done: list[Piece | PieceInstance] = list(pieces)
     if sum(len(piece.items) for piece in pieces) > _MOST_ITEMS:
         return found, done
     families: dict[str, list[int]] = {}
@@ -202,7 +202,7 @@ def templates(pieces: Sequence[Piece], taken: set[str]) -> tuple[list[Node], lis
         if made is not None:
             found.append(made[0])
             for place, instance in zip(places, made[1], strict=True):
-                done[place] = Instance(instance)
+                done[place] = PieceInstance(instance)
     return found, done
 
 

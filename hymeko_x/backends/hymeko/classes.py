@@ -13,7 +13,7 @@ from hymeko_x.language.templates import standard_templates
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from hymeko_x.backends.hymeko.elements import Element
+    from hymeko_x.backends.hymeko.elements import PrintedElement
     from hymeko_x.language.classes import Given
 
 Path = tuple[int, ...]
@@ -44,7 +44,7 @@ def _unmarked(item: Item, path: Path, found: dict[Path, Field]) -> Item:
     return item._replace(items=tuple(part._replace(type="") if part is mark else part for part in left))
 
 
-def apply_classes(elements: Iterable[Element], classes: Mapping[Path, Field], given: Given) -> None:
+def apply_classes(elements: Iterable[PrintedElement], classes: Mapping[Path, Field], given: Given) -> None:
     """Give elements the classes that they have as stereotypes, where that is shorter."""
     for element in elements:
         mark = classes.get(element.path)

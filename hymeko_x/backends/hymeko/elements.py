@@ -40,7 +40,7 @@ class Unit(NamedTuple):
         return len("".join(self.text.split()))
 
 
-class Element(Struct):
+class PrintedElement(Struct):
     """An element that may get a stereotype: where it stands, its units in order, and the units of its stereotypes.
 
     ``owner`` is the name of the element, of a shape that of its body; ``types`` are what the element is made from;
@@ -92,22 +92,22 @@ class Element(Struct):
         self.pairs = [(unit.slot, unit.text) for unit in left]
 
 
-def elements(items: Sequence[Item]) -> Iterable[Element]:
+def elements(items: Sequence[Item]) -> Iterable[PrintedElement]:
     """The elements, and the shapes and dofs in them."""
     for number, item in enumerate(items):
         if not isinstance(item, Node) or item.parameters is not None or (item.name in FOREIGN and not isinstance(item.name, QuotedName)):
             continue
         if item.name in ("units", "written", "world") and not isinstance(item.name, QuotedName) and not item.edge:
             continue
-        outer = Element((number,), item.name, item, _units(item))
+        outer = PrintedElement((number,), item.name, item, _units(item))
         if not (is_open(group(outer)[0]) and any(isinstance(inner, Field) and not _can_be_shared(inner) for inner in item.items)):
             yield outer  # parameters are in order, also those that no stereotype may hold
         for place, inner in enumerate(item.items):
             if isinstance(inner, Node) and (inner.name in SHAPES or (item.edge and inner.stereotypes)):
-                yield Element((number, place), item.name, inner, _units(inner))
+                yield PrintedElement((number, place), item.name, inner, _units(inner))
 
 
-def group(element: Element) -> tuple[str, str]:
+def group(element: PrintedElement) -> tuple[str, str]:
     """The kind and the type of an element; elements of one group may share a stereotype."""
     node = element.node
     if len(element.path) > 1 and not node.stereotypes:

@@ -13,7 +13,7 @@ from hymeko_x.language.syntax import ArcItem, Field, Ref, is_list
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from hymeko_x.backends.hymeko.elements import Element, Unit
+    from hymeko_x.backends.hymeko.elements import PrintedElement, Unit
     from hymeko_x.language.syntax import Node, Value
 
 _TYPES = {
@@ -53,7 +53,7 @@ _WORD = re.compile(r"[A-Za-z]\w{1,23}")
 """Words that make a good name."""
 
 
-def names(kind: str, units: Sequence[Unit], members: Sequence[Element]) -> Iterator[str]:
+def names(kind: str, units: Sequence[Unit], members: Sequence[PrintedElement]) -> Iterator[str]:
     """Names for a stereotype with these units, the best first. The last one may have a number behind it."""
     given = {unit.slot: name for unit in units if isinstance(unit.item, Field) and (name := _word(unit.item.value))}
     plain = _TYPES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
@@ -83,7 +83,7 @@ def names(kind: str, units: Sequence[Unit], members: Sequence[Element]) -> Itera
     yield last
 
 
-def _by_form(units: Sequence[Unit], members: Sequence[Element], behind: str) -> Iterator[str]:
+def _by_form(units: Sequence[Unit], members: Sequence[PrintedElement], behind: str) -> Iterator[str]:
     """Names of shapes whose bodies have given theirs to others: by their form, ``down_capsule``, or by the only body that has them."""
     own = meaning([member.owner for member in members])
     form = next((word for unit in units if (word := unit.text.partition(" ")[0]) in _SOLIDS), "")
@@ -93,7 +93,7 @@ def _by_form(units: Sequence[Unit], members: Sequence[Element], behind: str) -> 
         yield f"{members[0].owner}_{behind}"
 
 
-def _by_owners(members: Sequence[Element], behind: str, *, is_inside: bool, sides: bool) -> Iterator[str]:
+def _by_owners(members: Sequence[PrintedElement], behind: str, *, is_inside: bool, sides: bool) -> Iterator[str]:
     """Names from those of the elements, of shapes those of their bodies: what all of them share, or most."""
     owners = [member.owner for member in members]
     own = meaning(owners)
@@ -117,13 +117,13 @@ def _by_owners(members: Sequence[Element], behind: str, *, is_inside: bool, side
         yield from (most, f"{most}_{behind}")
 
 
-def _by_assembly(members: Sequence[Element]) -> str:
+def _by_assembly(members: Sequence[PrintedElement]) -> str:
     """What elements are a part of, by their names with those of their assemblies: ``wrist``, ``finger``, ``leg``; empty for none."""
     full = [f"{member.home}_{member.owner}" for member in members]
     return meaning(full) or limb(full)
 
 
-def _ends(members: Sequence[Element]) -> list[str]:
+def _ends(members: Sequence[PrintedElement]) -> list[str]:
     """The bodies to which joints lead, or on which frames are, that are called by number or by their side."""
     if any(telling_words(member.owner) for member in members):
         return [""]
@@ -136,14 +136,14 @@ def _end(node: Node) -> str:
     return next((ref.path[-1] for ref in arcs if ref.direction == ("-" if node.edge else "+")), "")
 
 
-def _by_mesh(mesh: str, members: Sequence[Element], behind: str) -> Iterator[str]:
+def _by_mesh(mesh: str, members: Sequence[PrintedElement], behind: str) -> Iterator[str]:
     """A name from a mesh that is another thing than the bodies: ``foot_look`` of the mesh ``foot`` at each calf."""
     words = telling_words(mesh)
     if words and not any(set(words) & set(telling_words(member.owner)) for member in members):
         yield f"{'_'.join(words)}_{behind}"
 
 
-def _by_place(units: Sequence[Unit], members: Sequence[Element], behind: str) -> Iterator[str]:
+def _by_place(units: Sequence[Unit], members: Sequence[PrintedElement], behind: str) -> Iterator[str]:
     """A name from the side to which shapes are moved, along y, where their bodies have no side: ``left_hip_look``."""
     own = meaning([member.owner for member in members])
     if any(side([f"{member.home}_{member.owner}"]) for member in members):

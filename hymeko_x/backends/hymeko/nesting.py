@@ -25,7 +25,7 @@ _MAX_DEPTH = 100
 """Blocks inside of blocks that are printed; elements that stand deeper are printed beside the others, with an edge that tells where."""
 
 
-class Nesting(Struct, frozen=True):
+class BlockNesting(Struct, frozen=True):
     """What is printed in the blocks of data: the elements in each block, the block of each, and the names that are known there.
 
     ``edges`` are those that the blocks stand for.
@@ -74,18 +74,18 @@ def name_of(name: str) -> str:
     return QuotedName(name) if name in RESERVED else name
 
 
-def nesting_of(mechanism: Mechanism, root: str) -> Nesting:
+def nesting_of(mechanism: Mechanism, root: str) -> BlockNesting:
     """The elements that stand in the blocks of others: those whose names tell so, each in one block."""
     found = {arcs[0].target: tuple([arc.target for arc in arcs[1:]]) for key, _, arcs in mechanism.edges(Nest) if _is_block(mechanism, key)}
     if not found:
-        return Nesting()
+        return BlockNesting()
     times = Counter(key for inner in found.values() for key in inner)
     found = {outer: inner for outer, inner in found.items() if all(times[key] == 1 for key in inner)}
     outer = {key: place for place, inner in found.items() for key in inner}
     deep = {place for place in found if _is_deep(place, outer)}
     found = {place: inner for place, inner in found.items() if place not in deep}
     outer = {key: place for key, place in outer.items() if place not in deep}
-    nesting = Nesting(found, outer, {}, frozenset(map(nest_key, found)), Scope(name=root))
+    nesting = BlockNesting(found, outer, {}, frozenset(map(nest_key, found)), Scope(name=root))
     return _with_scopes(nesting, mechanism)
 
 
@@ -111,7 +111,7 @@ def _is_deep(key: Id, outer: Mapping[Id, Id]) -> bool:
     return depth > _MAX_DEPTH
 
 
-def _with_scopes(nesting: Nesting, mechanism: Mechanism) -> Nesting:
+def _with_scopes(nesting: BlockNesting, mechanism: Mechanism) -> BlockNesting:
     """The nesting with the scope of each block, as the reader of text makes them."""
     scopes: dict[Id, Scope] = {}
     for key in (*mechanism.graph.vertices, *mechanism.graph.edges):
@@ -126,4 +126,4 @@ def _with_scopes(nesting: Nesting, mechanism: Mechanism) -> Nesting:
             if step in nesting.inner:
                 scope = scope.scopes.setdefault(name, Scope(prefix_of(step), scope))
                 scopes[step] = scope
-    return Nesting(nesting.inner, nesting.outer, scopes, nesting.edges, nesting.root)
+    return BlockNesting(nesting.inner, nesting.outer, scopes, nesting.edges, nesting.root)

@@ -14,7 +14,7 @@ from hymeko_x.formats.hymeko import (
     NAMED_AFTER_ID,
     PARTS,
     TEXTURE,
-    Word,
+    FieldWord,
     attached_edge,
     attached_key,
 )
@@ -70,7 +70,7 @@ def _named(items: list[Field], key: Id) -> list[Field]:
     return [item for item in items if item is not names[0] or names[0].value != value_of(key.name)]
 
 
-def word_fields(part: object, words: Iterable[Word], angles: Angles, motion: str = "") -> list[Field]:
+def word_fields(part: object, words: Iterable[FieldWord], angles: Angles, motion: str = "") -> list[Field]:
     """A field for every attribute that differs from its default; ``motion`` is what the dimension of that name stands for."""
     defaults = defaults_of(type(part))
     found: list[Field] = []

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct, field
 
 from hymeko_x.backends.hymeko.extras import with_extras
-from hymeko_x.backends.hymeko.nesting import Nesting, name_of
+from hymeko_x.backends.hymeko.nesting import BlockNesting, name_of
 from hymeko_x.backends.hymeko.values import pose_value, value_of
 from hymeko_x.formats import native_format
 from hymeko_x.formats.hymeko import CHILD_CLASS, NAMED_AFTER_ID, PARTS, SHORT_TYPES, TARGETS, attached_key
@@ -54,7 +54,7 @@ class HymekoSheet(Struct, frozen=True):
     angles: Angles
     homes: Mapping[str, str] = field(default_factory=dict)
     inside: str = ""
-    nesting: Nesting = Nesting()
+    nesting: BlockNesting = BlockNesting()
     within: Id | None = None
     around: Mapping[Id, str] | None = None
     shared: Mapping[Id, tuple[Id, ...]] = field(default_factory=dict)

@@ -15,7 +15,7 @@ from msgspec import Struct
 
 from hymeko_x.backends.hymeko.assemblies import take_name
 from hymeko_x.backends.hymeko.classes import apply_classes, in_reading_order, shortened, unmarked
-from hymeko_x.backends.hymeko.elements import AGAIN, Element, Unit, by_item, elements, group, is_open
+from hymeko_x.backends.hymeko.elements import AGAIN, PrintedElement, Unit, by_item, elements, group, is_open
 from hymeko_x.backends.hymeko.naming import names as best_names
 from hymeko_x.backends.hymeko.values import value_of
 from hymeko_x.factor.sets import candidates
@@ -56,7 +56,7 @@ def with_stereotypes(items: Sequence[Item], taken: Iterable[str] = (), given: Gi
     items, classes = unmarked(items)
     names = {*standard_templates(), *RESERVED, *taken, *(given or ()), *_names_of_elements(items)}
     common = {home for home, count in Counter(homes).items() if 3 * count > len(homes)}  # those tell no element from another
-    groups: dict[tuple[str, str], list[Element]] = {}
+    groups: dict[tuple[str, str], list[PrintedElement]] = {}
     for element in elements(items):
         home = homes[element.path[0]] if homes else ""
         element.home = "" if home in common else home
@@ -71,12 +71,12 @@ def with_stereotypes(items: Sequence[Item], taken: Iterable[str] = (), given: Gi
 
 
 def _shortest(
-    kind: str, members: list[Element], classes: Mapping[tuple[int, ...], Field], given: Given, names: set[str]
-) -> tuple[list[_Definition], list[Element]]:
+    kind: str, members: list[PrintedElement], classes: Mapping[tuple[int, ...], Field], given: Given, names: set[str]
+) -> tuple[list[_Definition], list[PrintedElement]]:
     """The stereotypes of one group and its elements with them: with default classes as stereotypes, or without, whichever is shorter."""
-    ways: list[tuple[int, set[str], list[_Definition], list[Element]]] = []
+    ways: list[tuple[int, set[str], list[_Definition], list[PrintedElement]]] = []
     for wanted in (given, {}) if given else ({},):
-        found = [Element(old.path, old.owner, old.node, old.units, home=old.home) for old in members]
+        found = [PrintedElement(old.path, old.owner, old.node, old.units, home=old.home) for old in members]
         apply_classes(found, classes, wanted)
         if wanted and not any(element.of_class for element in found):
             continue
@@ -88,7 +88,7 @@ def _shortest(
     return definitions, found
 
 
-def _cost(definitions: list[_Definition], members: list[Element]) -> int:
+def _cost(definitions: list[_Definition], members: list[PrintedElement]) -> int:
     """Letters of the stereotypes, and of what the elements have beside them."""
     texts = [unit.text for definition in definitions for unit in definition.units]
     texts += [unit.text for element in members for unit in element.left]
@@ -106,10 +106,10 @@ def _names_of_elements(items: Iterable[Item]) -> Iterable[str]:
 # ---- finding -------------------------------------------------------------------------------------------------------------
 
 
-def _stereotypes(kind: str, members: list[Element], names: set[str]) -> list[_Definition]:
+def _stereotypes(kind: str, members: list[PrintedElement], names: set[str]) -> list[_Definition]:
     """The stereotypes of one group, the one that saves most first, then those that refine it; those of each class for themselves."""
     found: list[_Definition] = []
-    by_types: dict[tuple[object, ...], list[Element]] = {}
+    by_types: dict[tuple[object, ...], list[PrintedElement]] = {}
     for member in members:
         by_types.setdefault((member.types, "class" in member.of_class), []).append(member)
     queue = [(alike, alike[0].types) for alike in by_types.values()]
@@ -129,7 +129,7 @@ def _stereotypes(kind: str, members: list[Element], names: set[str]) -> list[_De
     return found
 
 
-def _best(kind: str, left: list[Element]) -> tuple[list[Unit], list[Element]] | None:
+def _best(kind: str, left: list[PrintedElement]) -> tuple[list[Unit], list[PrintedElement]] | None:
     """The set of units that saves most, and the elements that it serves."""
     for shared in candidates([element.pairs for element in left]):
         members = [element for element in left if all(slot in element.units and element.units[slot].text == text for slot, text in shared)]
@@ -140,7 +140,7 @@ def _best(kind: str, left: list[Element]) -> tuple[list[Unit], list[Element]] | 
     return None
 
 
-def _in_order(kind: str, shared: frozenset[Pair], members: list[Element]) -> list[Unit]:
+def _in_order(kind: str, shared: frozenset[Pair], members: list[PrintedElement]) -> list[Unit]:
     """The units of a stereotype in the order of its first element.
 
     Where order counts, units between them that differ are held as well, with their most frequent text; elements then have their own.
@@ -164,7 +164,7 @@ def _is_ordered(kind: str, unit: Unit) -> bool:
     return not unit.format and isinstance(unit.item, Field) and unit.item.value is not None and is_open(kind)
 
 
-def _keeps_order(kind: str, units: list[Unit], element: Element) -> bool:
+def _keeps_order(kind: str, units: list[Unit], element: PrintedElement) -> bool:
     """Whether an element has all units of the stereotype, and merging both gives its units in their order."""
     given = {**element.given, **{unit.slot: unit for unit in units}}
     if not given.keys() <= element.units.keys():
@@ -182,7 +182,7 @@ def _keeps_order(kind: str, units: list[Unit], element: Element) -> bool:
     return all(next(merged[unit.format]) == slot for slot, unit in element.units.items() if unit.format or ordered)
 
 
-def _splits_repeated(element: Element, given: Mapping[str, Unit], differing: list[str]) -> bool:
+def _splits_repeated(element: PrintedElement, given: Mapping[str, Unit], differing: list[str]) -> bool:
     """Whether some of several fields of one name would stand in the stereotype and some in the element."""
     repeated = {slot.split(AGAIN)[0] for slot in element.units if AGAIN in slot}
     names = Counter(slot.split(AGAIN)[0] for slot in element.units)
@@ -190,7 +190,7 @@ def _splits_repeated(element: Element, given: Mapping[str, Unit], differing: lis
     return any(shared[name] not in (0, names[name]) for name in repeated) or any(slot.split(AGAIN)[0] in repeated for slot in differing)
 
 
-def _saving(kind: str, units: list[Unit], members: list[Element]) -> int:
+def _saving(kind: str, units: list[Unit], members: list[PrintedElement]) -> int:
     """Letters that a stereotype saves, its definition and its name counted."""
     name = min(len(next(best_names(kind, units, members))), _NAME) + 1
     texts = {unit.slot: unit.text for unit in units}
@@ -205,7 +205,7 @@ def _saving(kind: str, units: list[Unit], members: list[Element]) -> int:
 # ---- naming --------------------------------------------------------------------------------------------------------------
 
 
-def _free_name(kind: str, units: list[Unit], members: list[Element], taken: set[str]) -> str:
+def _free_name(kind: str, units: list[Unit], members: list[PrintedElement], taken: set[str]) -> str:
     """The first of the names that is free, which is taken then; the last of them with a number where none is."""
     wanted = [*best_names(kind, units, members)]
     return take_name(next((name for name in wanted if name not in taken), wanted[-1]), taken)
@@ -228,7 +228,7 @@ def _definition(definition: _Definition) -> Node:
     return Node(definition.name, tuple(items), definition.base, ())
 
 
-def _applied(element: Element) -> Node:
+def _applied(element: PrintedElement) -> Node:
     """The element with its stereotype, without the units of that."""
     items: list[Item] = []
     for item, units in by_item(element.node):

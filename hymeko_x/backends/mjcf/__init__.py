@@ -56,7 +56,7 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     if not sheet.from_mjcf:
         settle(sheet, settings_end)
     lines = render(sheet.root)
-    return Package("\n".join([*lines, ""]).encode(), carry=lambda residue: _with_residue(sheet, lines, residue))
+    return Package("\n".join([*lines, ""]).encode(), with_residue=lambda residue: _with_residue(sheet, lines, residue))
 
 
 def _with_residue(sheet: MjcfSheet, lines: list[str], residue: str) -> bytes:

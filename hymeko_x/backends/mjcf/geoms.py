@@ -8,7 +8,7 @@ from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf import CLASSES, MAIN
 from hymeko_x.formats.mjcf.notations import GRID as NOTED_GRID
 from hymeko_x.formats.mjcf.notations import attribute
-from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, between_its_ends, seen_from
+from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, GeomPlace, between_its_ends, seen_from
 from hymeko_x.formats.mjcf.roles import role_attributes
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, NoShape, Plane
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.backends.mjcf.frames import BodyTag
     from hymeko_x.backends.mjcf.sheet import MjcfSheet
-    from hymeko_x.formats.mjcf.codec import Group
+    from hymeko_x.formats.mjcf.codec import AttributeGroup
     from hymeko_x.ir.mechanism import ShapeView
     from hymeko_x.ir.parts import Geometry
 
@@ -34,14 +34,14 @@ def write_geom(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     own_class = sheet.own_class(key) if sheet.from_mjcf else CLASSES.get(shape.role)
     base = sheet.base("geom", own_class, body.childclass if frame is None else frame.childclass)
     fitted = "mesh" in kept or ("mesh" in base and view.mesh is None)
-    groups: tuple[Group, ...] = FITTED_GEOM if fitted else GEOM
+    groups: tuple[AttributeGroup, ...] = FITTED_GEOM if fitted else GEOM
     if frame is not None:
         groups = (seen_from(PLACE, frame.pose), *groups[1:])
     if "fromto" in base and not fitted and not _has_ends(shape.geometry) and "fromto" not in (main := sheet.base("geom", MAIN)):
         own_class, kept, base = MAIN, {**_beyond(main, base, groups), **kept}, main  # as no position undoes the two points of a class
     grid = (sheet.mechanism.notation(key, NOTED_GRID) or GRID) if isinstance(shape.geometry, Plane) else None
     mesh = None if view.mesh is None else sheet.reference(Arc(view.mesh))
-    place = Place(shape.geometry, view.pose, grid)
+    place = GeomPlace(shape.geometry, view.pose, grid)
     values: dict[str, object] = {
         "place": between_its_ends(place) if "fromto" in base else place,
         "mesh": mesh,
@@ -68,7 +68,7 @@ def _has_ends(geometry: Geometry) -> bool:
     return isinstance(geometry, Capsule | Cylinder)
 
 
-def _beyond(main: Mapping[str, str], base: Mapping[str, str], groups: tuple[Group, ...]) -> dict[str, str]:
+def _beyond(main: Mapping[str, str], base: Mapping[str, str], groups: tuple[AttributeGroup, ...]) -> dict[str, str]:
     """What a class gives beyond the main one, but for the attributes of these groups."""
     named = {name for group in groups for name in group.names}
     return {name: text for name, text in base.items() if name not in named and main.get(name) != text}

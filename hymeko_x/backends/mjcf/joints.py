@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.backends.mjcf.frames import BodyTag
     from hymeko_x.backends.mjcf.sheet import MjcfSheet
-    from hymeko_x.formats.mjcf.codec import Group, Settings
+    from hymeko_x.formats.mjcf.codec import AttributeGroup, Settings
     from hymeko_x.ir.mechanism import JointView
     from hymeko_x.ir.parts import Dof
     from hymeko_x.ir.values import Pose, Vec3
@@ -84,7 +84,7 @@ def _explicit(kind: DofKind, axis: Vec3, anchor: Vec3) -> tuple[Vec3, Vec3, Writ
     return axis, ZERO if kind is DofKind.SLIDE else anchor, Written("axis", axis)
 
 
-def _seen_from(group: Group, frame: Pose) -> Group:
+def _seen_from(group: AttributeGroup, frame: Pose) -> AttributeGroup:
     """The axis and the anchor of a dof that stands in a <frame>, seen from the body."""
     back = inverse(frame)
     if group is AXIS:

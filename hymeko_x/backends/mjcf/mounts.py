@@ -12,7 +12,7 @@ from hymeko_x.ir.parts import Camera, Frame, Light
 if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.frames import BodyTag
     from hymeko_x.backends.mjcf.sheet import MjcfSheet
-    from hymeko_x.formats.mjcf.codec import Group
+    from hymeko_x.formats.mjcf.codec import AttributeGroup
     from hymeko_x.ir.mechanism import Id, MountView
     from hymeko_x.ir.parts import Parameters
 
@@ -22,7 +22,7 @@ _PLAIN_LIGHT = (LIGHT[1], LIGHT[0], LIGHT[2])
 
 def write_mount(sheet: MjcfSheet, body: BodyTag, mount: MountView) -> None:
     """A frame, camera or light on its body."""
-    key, pose = mount.thing, mount.pose
+    key, pose = mount.mounted, mount.pose
     match sheet.mechanism.graph.vertices.get(key):
         case Frame(size=size):
             _add(sheet, body, key, "site", SITE, {"pose": pose, "size": size}, ())
@@ -38,7 +38,7 @@ def write_mount(sheet: MjcfSheet, body: BodyTag, mount: MountView) -> None:
 
 
 def _add(
-    sheet: MjcfSheet, body: BodyTag, key: Id, tag: str, groups: tuple[Group, ...], values: dict[str, Any], parameters: Parameters
+    sheet: MjcfSheet, body: BodyTag, key: Id, tag: str, groups: tuple[AttributeGroup, ...], values: dict[str, Any], parameters: Parameters
 ) -> None:
     notations, kept = sheet.notations(key), sheet.kept_attributes(key)
     frame = body.frame_of(sheet, key)

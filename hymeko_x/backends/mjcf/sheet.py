@@ -29,11 +29,11 @@ from hymeko_x.xml.printing import Tag
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from hymeko_x.formats.mjcf.codec import Group
-    from hymeko_x.formats.mjcf.tree import Element
+    from hymeko_x.formats.mjcf.codec import AttributeGroup
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotArc
     from hymeko_x.ir.notations import Notation
     from hymeko_x.ir.parts import Dof, Parameters
+    from hymeko_x.xml.tree import XmlNode
 
 T = TypeVar("T")
 
@@ -155,7 +155,7 @@ class MjcfSheet(Struct):
     def attributes(
         self,
         values: Mapping[str, Any],
-        groups: tuple[Group, ...],
+        groups: tuple[AttributeGroup, ...],
         base: Mapping[str, str],
         notations: Mapping[str, str],
         kept: dict[str, str],
@@ -175,7 +175,7 @@ class MjcfSheet(Struct):
                 found |= _others({**texts, **undone(group, base, texts)}, base) if base else texts
         return found if self.from_mjcf else _unsigned(found)
 
-    def _means(self, group: Group, attributes: Mapping[str, str], value: Any) -> bool:
+    def _means(self, group: AttributeGroup, attributes: Mapping[str, str], value: Any) -> bool:
         try:
             return group.same(group.read(attributes, self.settings), value)
         except BadAttribute:
@@ -312,7 +312,7 @@ def _ranks(mechanism: Mechanism, taken: set[int]) -> dict[Id, int]:
     return found
 
 
-def _parsed(extra: Extra) -> Element | None:
+def _parsed(extra: Extra) -> XmlNode | None:
     if extra.format == "comment":
         return None
     try:

@@ -13,7 +13,7 @@ from hymeko_x.backends.mjcf.references import settings_in
 from hymeko_x.formats.mjcf.tree import parse_text, verbatim
 from hymeko_x.formats.mjcf.words import NAME, joined
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.xml.tree import Node
+from hymeko_x.xml.tree import XmlNode
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,7 +55,7 @@ def _inlined(extra: Extra, settings: Settings, files: Files) -> Extra:
     return replace(extra, text=verbatim(root)) if changed else extra
 
 
-def _fill(node: Node, data: bytes) -> bool:
+def _fill(node: XmlNode, data: bytes) -> bool:
     """Give a <skin> the content of a file; False for a file that is none, which changes nothing."""
     try:
         points, coordinates, faces, bones = struct.unpack_from("<4i", data)
@@ -84,12 +84,12 @@ def _arrays(data: bytes, at: int, *kinds: str) -> tuple[list[tuple[float, ...]],
     return arrays, at
 
 
-def _bone(data: bytes, at: int) -> tuple[Node, int]:
+def _bone(data: bytes, at: int) -> tuple[XmlNode, int]:
     name = data[at : at + _NAME].split(b"\0", 1)[0].decode()
     (place, quat, (count,)), at = _arrays(data, at + _NAME, "3f", "4f", "i")
     (indices, weights), at = _arrays(data, at, f"{int(count)}i", f"{int(count)}f")
     texts = {"bindpos": _text(place), "bindquat": _text(quat), "vertid": _text(indices), "vertweight": _text(weights)}
-    return Node("bone", {"body": name, **texts}), at
+    return XmlNode("bone", {"body": name, **texts}), at
 
 
 def _text(numbers: Sequence[float]) -> str:

@@ -37,7 +37,7 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
         return "\n".join(['<?xml version="1.0"?>', *before, *render(whole), *after, ""]).encode()
 
     files = {**contents_of(mechanism, sheet.mesh_files, sheet.images), **_model_config(sheet, options, report)}
-    return Package(printed(""), files, carry=printed)
+    return Package(printed(""), files, with_residue=printed)
 
 
 def _model_config(sheet: SdfSheet, options: Options, report: Report) -> dict[str, bytes]:
@@ -55,6 +55,6 @@ def _model_config(sheet: SdfSheet, options: Options, report: Report) -> dict[str
 
 
 def _residue_elements(text: str) -> list[str]:
-    """The elements that carry a residue; a prefix makes them custom elements, which readers of SDF leave alone."""
+    """The elements that contain a residue; a prefix makes them custom elements, which readers of SDF leave alone."""
     texts = [f"<![CDATA[\n{part}]]>" if "]]>" not in part else escaped_lines(part) for part in parts_of_text(text)]
     return [f'<{words.RESIDUE} xmlns:hymeko="{words.RESIDUE_NAMESPACE}">{part}</{words.RESIDUE}>' for part in texts]

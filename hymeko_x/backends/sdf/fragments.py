@@ -17,7 +17,7 @@ from hymeko_x.xml.namespaces import PREFIX, with_declared
 from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.printing import Tag, in_lines, markup, put_back, ready
 from hymeko_x.xml.text import escaped
-from hymeko_x.xml.tree import Node
+from hymeko_x.xml.tree import XmlNode
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -66,28 +66,28 @@ def _of_link(body: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
     if len(scripts) == 1 and (script := next(iter(scripts))):
         yield _leaf("material", script)
     for mount in sheet.mechanism.mounts.get(body, ()):
-        if not isinstance(sheet.mechanism.graph.vertices.get(mount.thing), Light) and sheet.is_sensor(mount.thing):
+        if not isinstance(sheet.mechanism.graph.vertices.get(mount.mounted), Light) and sheet.is_sensor(mount.mounted):
             yield sensor_tag(mount, sdf_words.split_scope(body.name)[0], body, sheet)
 
 
-def _shared(word: str, path: str, elements: Sequence[Node]) -> Iterator[Tag]:
+def _shared(word: str, path: str, elements: Sequence[XmlNode]) -> Iterator[Tag]:
     """The value below all of these elements, where they have the same one: a fragment is for the whole link."""
     found = {_value(path, element) for element in elements}
     if len(found) == 1 and (value := next(iter(found))) is not None:
         yield _leaf(word, value)
 
 
-def _whole(key: Id, sheet: SdfSheet) -> Node:
+def _whole(key: Id, sheet: SdfSheet) -> XmlNode:
     """What SDF alone represents of an element of the mechanism."""
     own = sheet.extras(key)
     if not own:
-        return Node("x", {})
+        return XmlNode("x", {})
     whole = Tag("x", {})
     put_back(whole, own, {})
     return parse_text(ready(whole, 0))
 
 
-def _value(path: str, element: Node) -> str | None:
+def _value(path: str, element: XmlNode) -> str | None:
     """The text of the first element at a path below this one."""
     nodes = [element]
     for step in path.split("/"):
@@ -129,18 +129,18 @@ def _of_model(sheet: SdfSheet) -> Iterator[Tag | str]:
             yield joint_tag(key, sdf_words.split_scope(key.name)[0], sheet)
 
 
-def _content(key: Id, sheet: SdfSheet) -> Iterator[Node]:
+def _content(key: Id, sheet: SdfSheet) -> Iterator[XmlNode]:
     """The elements right below an element of the mechanism that SDF alone represents."""
     for extra in sheet.extras(key):
         if not extra.path and extra.text.startswith("<") and not extra.text.startswith("<?"):
             yield from _nodes(extra.text)
 
 
-def _nodes(text: str) -> list[Node]:
+def _nodes(text: str) -> list[XmlNode]:
     return [child for child in parse_text(f"<x>{text}</x>").children if child.is_element]
 
 
-def _text(node: Node) -> str:
+def _text(node: XmlNode) -> str:
     return " ".join((node.text or "").split())
 
 

@@ -24,7 +24,7 @@ MODEL = Id("frame", words.MODEL_FRAME)
 """The frame of the model that has no scope; it is no element of the mechanism."""
 
 
-class Places:
+class ZeroPoses:
     """The poses of bodies, joints, frames and models in the world, at the zero configuration."""
 
     def __init__(self, mechanism: Mechanism) -> None:
@@ -42,7 +42,7 @@ class Places:
             poses[key] = compose(poses.get(arcs[0].target, IDENTITY), pose_weight(arcs[0])) if arcs else IDENTITY
         for body, views in mechanism.mounts.items():
             for mount in views:
-                poses[mount.thing] = compose(poses.get(body, IDENTITY), mount.pose)
+                poses[mount.mounted] = compose(poses.get(body, IDENTITY), mount.pose)
         return poses
 
     @property
@@ -88,7 +88,7 @@ class Places:
     @cached_property
     def mounts(self) -> Mapping[Id, tuple[Id, Pose]]:
         """The body of each mounted element, and its pose there."""
-        return {view.thing: (view.body, view.pose) for views in self._mechanism.mounts.values() for view in views}
+        return {view.mounted: (view.body, view.pose) for views in self._mechanism.mounts.values() for view in views}
 
     def body_of(self, target: Id) -> Id:
         """The body that a frame is on; a body itself."""

@@ -16,7 +16,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import fragments
-from hymeko_x.formats.sdf.values import COLOUR, NUMBER, BadText, Field
+from hymeko_x.formats.sdf.values import COLOUR, NUMBER, BadText, ValueField
 from hymeko_x.ir.mechanism import ROOT, Extra, Id
 from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import Joint, Role
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge
     from hymeko_x.rewrite.context import Context
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 Fields = dict[tuple[Id, str], Any]
 """Values by joint or shape, and the name of the field: one of the shape, or of the joint's only dof."""
@@ -40,7 +40,10 @@ _PREFIX = re.compile(r"<([A-Za-z_][\w.-]*):|\s([A-Za-z_][\w.-]*):[\w.-]+=")
 _SENSOR_NAME = re.compile(r"<(?:sensor|projector)\b[^>]*?\sname=([\"'])(.*?)\1")
 _XMLNS = "@xmlns:"
 _LAST = sys.maxsize
-_FIELDS = {field.path: field for field in (Field("surface/friction/ode/mu", "friction", NUMBER), Field("material/diffuse", "rgba", COLOUR))}
+_FIELDS = {
+    field.path: field
+    for field in (ValueField("surface/friction/ode/mu", "friction", NUMBER), ValueField("material/diffuse", "rgba", COLOUR))
+}
 _FLAGS = ("0", "1", "false", "true")
 """The words for a flag in SDF."""
 
@@ -105,7 +108,7 @@ def _named_once(extra: Extra, key: Id, taken: set[str], context: Context) -> Ext
     return replace(extra, text=extra.text[: found.start(2)] + name + extra.text[found.end(2) :])
 
 
-def extras_of(node: Node, mechanism: Mechanism, fields: Fields) -> Iterator[tuple[Id, Extra]]:
+def extras_of(node: XmlNode, mechanism: Mechanism, fields: Fields) -> Iterator[tuple[Id, Extra]]:
     """What a <gazebo> element gives to elements of a robot, as extras of SDF; values of joints and shapes go into ``fields``."""
     reference = node.attributes.get("reference")
     body, joint = Id("body", reference or ""), Id("joint", reference or "")
@@ -121,13 +124,13 @@ def extras_of(node: Node, mechanism: Mechanism, fields: Fields) -> Iterator[tupl
             yield from _of_joint(child, joint, mechanism, fields)
 
 
-def _is_taken(child: Node, mechanism: Mechanism) -> bool:
+def _is_taken(child: XmlNode, mechanism: Mechanism) -> bool:
     """Whether a child of a model would have the name of a link or joint of the robot, which SDF refuses."""
     name = child.attributes.get("name", "")
     return Id("body", name) in mechanism.graph.vertices or Id("joint", name) in mechanism.graph.edges
 
 
-def _of_joint(child: Node, key: Id, mechanism: Mechanism, fields: Fields) -> Iterator[tuple[Id, Extra]]:
+def _of_joint(child: XmlNode, key: Id, mechanism: Mechanism, fields: Fields) -> Iterator[tuple[Id, Extra]]:
     if child.tag in fragments.OF_JOINT:
         yield from _values(child, *fragments.OF_JOINT[child.tag], [key])
     elif child.tag == "sensor":
@@ -138,7 +141,7 @@ def _of_joint(child: Node, key: Id, mechanism: Mechanism, fields: Fields) -> Ite
             fields[key, name] = value
 
 
-def _of_link(child: Node, body: Id, mechanism: Mechanism, fields: Fields) -> Iterator[tuple[Id, Extra]]:
+def _of_link(child: XmlNode, body: Id, mechanism: Mechanism, fields: Fields) -> Iterator[tuple[Id, Extra]]:
     shapes = mechanism.shapes.get(body, ())
     collisions, visuals = ([view.id for view in shapes if view.shape.role is role] for role in (Role.COLLISION, Role.VISUAL))
     if child.tag in fragments.OF_LINK:
@@ -160,7 +163,7 @@ def _of_link(child: Node, body: Id, mechanism: Mechanism, fields: Fields) -> Ite
         yield from _of_shapes(child, visuals if words.ROLES[child.tag] is Role.VISUAL else collisions, fields)
 
 
-def _of_shapes(child: Node, keys: list[Id], fields: Fields) -> Iterator[tuple[Id, Extra]]:
+def _of_shapes(child: XmlNode, keys: list[Id], fields: Fields) -> Iterator[tuple[Id, Extra]]:
     """What a fragment gives to all visuals or all collisions of a link, in the words of SDF. The ambient colour is as the diffuse one."""
     rest = [("", inner) for inner in child.children if inner.is_element]
     while rest:
@@ -174,7 +177,7 @@ def _of_shapes(child: Node, keys: list[Id], fields: Fields) -> Iterator[tuple[Id
             yield from ((key, _at_end(path, in_lines(markup(node)))) for key in keys)
 
 
-def _set(field: Field, node: Node, keys: list[Id], fields: Fields) -> None:
+def _set(field: ValueField, node: XmlNode, keys: list[Id], fields: Fields) -> None:
     """Give a value to these shapes, if it is one."""
     try:
         value = field.codec.read(_text(node))
@@ -183,7 +186,7 @@ def _set(field: Field, node: Node, keys: list[Id], fields: Fields) -> None:
     fields.update({(key, field.name): value if field.name == "rgba" else (value,) for key in keys})
 
 
-def _values(child: Node, path: str, name: str, keys: list[Id]) -> Iterator[tuple[Id, Extra]]:
+def _values(child: XmlNode, path: str, name: str, keys: list[Id]) -> Iterator[tuple[Id, Extra]]:
     """The value of a fragment at a path of these elements; none where it is no value of its kind."""
     text = _text(child)
     if child.tag in fragments.FLAGS:
@@ -207,7 +210,7 @@ def _noise_by_axis(found: re.Match[str]) -> str:
     return "".join(texts)
 
 
-def _number(node: Node) -> float | None:
+def _number(node: XmlNode) -> float | None:
     """The number that a fragment gives; None for what is none."""
     try:
         return float(NUMBER.read(_text(node)))
@@ -215,7 +218,7 @@ def _number(node: Node) -> float | None:
         return None
 
 
-def _text(node: Node) -> str:
+def _text(node: XmlNode) -> str:
     """What a fragment gives: its attribute ``value``, as in older files, or else its text."""
     return " ".join((node.attributes.get("value") or node.text or "").split())
 

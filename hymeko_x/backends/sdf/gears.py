@@ -16,7 +16,7 @@ from hymeko_x.ir.values import IDENTITY, Pose, compose, rotate, unit
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.backends.sdf.frames import Places
+    from hymeko_x.backends.sdf.frames import ZeroPoses
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc
     from hymeko_x.ir.values import Vec3
 
@@ -29,7 +29,7 @@ class Gear(NamedTuple):
     ratio: float
 
 
-def gears(mechanism: Mechanism, places: Places) -> dict[Id, Gear]:
+def gears(mechanism: Mechanism, places: ZeroPoses) -> dict[Id, Gear]:
     """The gearbox of each coupling that is one."""
     own = [(key, arcs) for key, _, arcs in mechanism.edges(Coupling) if mechanism.notation(key, notations.GEARBOX) is not None]
     hinges = _hinges(mechanism, places) if own else {}
@@ -37,7 +37,7 @@ def gears(mechanism: Mechanism, places: Places) -> dict[Id, Gear]:
     return {key: gear for key, gear in found if gear is not None}
 
 
-def _hinges(mechanism: Mechanism, places: Places) -> dict[frozenset[Id], Hinge]:
+def _hinges(mechanism: Mechanism, places: ZeroPoses) -> dict[frozenset[Id], Hinge]:
     views = (view for view in mechanism.joints.values() if [dof.kind for dof in view.joint.dofs] == [DofKind.HINGE])
     return {
         frozenset((view.parent, view.child)): Hinge(
@@ -47,7 +47,9 @@ def _hinges(mechanism: Mechanism, places: Places) -> dict[frozenset[Id], Hinge]:
     }
 
 
-def _gear(key: Id, arcs: tuple[RobotArc, ...], mechanism: Mechanism, places: Places, hinges: Mapping[frozenset[Id], Hinge]) -> Gear | None:
+def _gear(
+    key: Id, arcs: tuple[RobotArc, ...], mechanism: Mechanism, places: ZeroPoses, hinges: Mapping[frozenset[Id], Hinge]
+) -> Gear | None:
     """The gearbox of a coupling; None where its links or axes are not those of the coupled joints any more."""
     scope = words.split_scope(key.name)[0]
     parent, child, *reference = [places.find(scope, name) for name in mechanism.notation(key, notations.GEARBOX) or ("", "")]
@@ -66,7 +68,7 @@ def _gear(key: Id, arcs: tuple[RobotArc, ...], mechanism: Mechanism, places: Pla
     return Gear(child, pose, -factor * leader.sign * follower.sign + 0.0)
 
 
-def _pose(key: Id, child: Id, scope: str, mechanism: Mechanism, places: Places) -> Pose:
+def _pose(key: Id, child: Id, scope: str, mechanism: Mechanism, places: ZeroPoses) -> Pose:
     """The pose of the gearbox in the frame that it names as its child."""
     written = mechanism.notation(key, notations.POSE) or WrittenPose()
     base = places.find(scope, written.relative_to) if written.relative_to else None
@@ -77,7 +79,7 @@ def _pose(key: Id, child: Id, scope: str, mechanism: Mechanism, places: Places) 
     return pose if base is None else compose(places.relative(base, child), pose)
 
 
-def _axis(key: Id, tag: str, child: Id, pose: Pose, scope: str, mechanism: Mechanism, places: Places) -> Vec3 | None:
+def _axis(key: Id, tag: str, child: Id, pose: Pose, scope: str, mechanism: Mechanism, places: ZeroPoses) -> Vec3 | None:
     """An axis in the world at the zero configuration, from what its author wrote."""
     texts = mechanism.notation(key, notations.WRITTEN) or {}
     try:
@@ -89,7 +91,7 @@ def _axis(key: Id, tag: str, child: Id, pose: Pose, scope: str, mechanism: Mecha
     return rotate(at.quat, direction)
 
 
-def _frame(texts: Mapping[str, str], tag: str, scope: str, mechanism: Mechanism, places: Places) -> Id | None:
+def _frame(texts: Mapping[str, str], tag: str, scope: str, mechanism: Mechanism, places: ZeroPoses) -> Id | None:
     """The frame in which an axis is given; None for that of the gearbox."""
     expressed = texts.get(f"{tag}/xyz/@expressed_in")
     if expressed:

@@ -17,7 +17,7 @@ from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.parts import Joint
 from hymeko_x.xml.printing import ready
 from hymeko_x.xml.text import unescaped
-from hymeko_x.xml.tree import Node
+from hymeko_x.xml.tree import XmlNode
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -64,14 +64,14 @@ def _places_of(key: Id, sheet: SdfSheet) -> Iterator[tuple[Id, str, str]]:
     if key.kind == "loop":
         yield ROOT, "model", ready(joint_tag(key, scope, sheet), 0)
     edge = sheet.mechanism.graph.edges.get(key)
-    things = [key] if edge is None else [arc.target for arc in edge.arcs]
-    for thing in (thing for thing in things if thing.kind in _SENSORS):
-        bodies = [body for body in (sheet.places.mounts.get(thing, (WORLD,))[0],) if body != WORLD]
-        joints = [joint for joint, sensors in sheet.joint_sensors.items() if thing in sensors]
-        for view in (view for body in bodies for view in sheet.mechanism.mounts[body] if view.thing == thing):
+    elements = [key] if edge is None else [arc.target for arc in edge.arcs]
+    for element in (element for element in elements if element.kind in _SENSORS):
+        bodies = [body for body in (sheet.places.mounts.get(element, (WORLD,))[0],) if body != WORLD]
+        joints = [joint for joint, sensors in sheet.joint_sensors.items() if element in sensors]
+        for view in (view for body in bodies for view in sheet.mechanism.mounts[body] if view.mounted == element):
             yield view.body, "", ready(sensor_tag(view, words.split_scope(view.body.name)[0], view.body, sheet), 0)
         for joint in joints:
-            yield joint, "", ready(joint_sensor_tag(thing, words.split_scope(joint.name)[0], sheet), 0)
+            yield joint, "", ready(joint_sensor_tag(element, words.split_scope(joint.name)[0], sheet), 0)
 
 
 def _obeyed(given: list[_Given], image: Mechanism) -> Callable[[Difference], bool]:
@@ -143,7 +143,7 @@ def _given(mechanism: Mechanism) -> Iterator[_Given]:
             continue
         for child in (child for child in fragment.children if child.is_element):
             fields: Fields = {}
-            alone = Node(fragments.TAG, fragment.attributes, children=[child])
+            alone = XmlNode(fragments.TAG, fragment.attributes, children=[child])
             yield _Given(text, child.tag, [*extras_of(alone, mechanism, fields)], fields)
 
 

@@ -19,7 +19,7 @@ from hymeko_x.formats.sdf.values import (
     STRENGTH_LIMITS,
     VECTOR,
     BadText,
-    Field,
+    ValueField,
 )
 from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import WORLD, numbers_weight
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from hymeko_x.backends.sdf.sheet import SdfSheet
     from hymeko_x.ir.mechanism import Id
 
-_RATIO = Field(RATIO, "ratio", NUMBER, 1.0)
+_RATIO = ValueField(RATIO, "ratio", NUMBER, 1.0)
 
 
 def joint_tag(key: Id, scope: str, sheet: SdfSheet) -> Tag:
@@ -131,7 +131,7 @@ def _add_pitch(tag: Tag, dof: Dof, texts: Mapping[str, str], sheet: SdfSheet) ->
     """The pitch by the word that the author used; old readers know ``thread_pitch`` alone."""
     old = "thread_pitch" in texts or words.minor(sheet.version) < words.minor(words.VERSION_OF_PITCH)
     name, codec = ("thread_pitch", OLD_PITCH) if old and "screw_thread_pitch" not in texts and dof.pitch else ("screw_thread_pitch", PITCH)
-    sheet.put(tag, Field(name, "pitch", codec, OLD_PITCH.read("1") if sheet.from_sdf else None), dof.pitch, texts)
+    sheet.put(tag, ValueField(name, "pitch", codec, OLD_PITCH.read("1") if sheet.from_sdf else None), dof.pitch, texts)
 
 
 def _add_axis(axis: Tag, dof: Dof, name: str, key: Id, scope: str, texts: Mapping[str, str], sheet: SdfSheet) -> None:

@@ -9,7 +9,7 @@ from hymeko_x.backends.sdf.shapes import shape_tag
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.notations import WrittenPose
-from hymeko_x.formats.sdf.values import NUMBER, TENSOR, BadText, Field, read_pose
+from hymeko_x.formats.sdf.values import NUMBER, TENSOR, BadText, ValueField, read_pose
 from hymeko_x.ir.digits import numbers_text
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Inertial, Light
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.values import Tensor
 
-_MASS = Field("mass", "mass", NUMBER, 1.0)
+_MASS = ValueField("mass", "mass", NUMBER, 1.0)
 _NEW_MASS, *_NEW_TENSOR = [field._replace(default=None) if field.default else field for field in (_MASS, *TENSOR)]
 """Mass and moments are always written, unless the author of an SDF file left them out; products of zero never."""
 _DEFAULT = Inertial(1.0, tensor=(1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
@@ -48,9 +48,9 @@ def link_tag(key: Id, scope: str, sheet: SdfSheet) -> Tag:
                 counts[name] = counts.get(name, 0) + 1
                 tag.children.append(shape_tag(view, name, counts[name], scope, sheet))
     for mount in sheet.mechanism.mounts.get(key, ()):
-        if isinstance(sheet.mechanism.graph.vertices.get(mount.thing), Light):
+        if isinstance(sheet.mechanism.graph.vertices.get(mount.mounted), Light):
             tag.children.append(light_tag(mount, scope, key, sheet))
-        elif sheet.is_sensor(mount.thing):
+        elif sheet.is_sensor(mount.mounted):
             tag.children.append(sensor_tag(mount, scope, key, sheet))
     sheet.put_back(tag, key, "" if computed else "<inertial")
     return tag

@@ -46,7 +46,7 @@ class _Closer:
     def __init__(self, mechanism: Mechanism, context: Context) -> None:
         self._mechanism = mechanism
         self._context = context
-        self._places = {view.thing: _End(view.body, view.pose) for views in mechanism.mounts.values() for view in views}
+        self._places = {view.mounted: _End(view.body, view.pose) for views in mechanism.mounts.values() for view in views}
         self._names = names_in_use(mechanism)
         self._roots: dict[Id, Id] = {WORLD: WORLD}
         for body in mechanism.depth_first():

@@ -26,7 +26,7 @@ def document(sheet: SdfSheet) -> Tag:
     root = Tag("sdf", {"version": sheet.version})
     put_back(root, [extra for extra in sheet.extras(ROOT) if extra.path.startswith("@")], {})
     sheet.declared = {name: uri for name, uri in root.attributes.items() if name.startswith("xmlns")}
-    lights = [view for view in sheet.mechanism.mounts.get(WORLD, ()) if isinstance(sheet.mechanism.graph.vertices.get(view.thing), Light)]
+    lights = [view for view in sheet.mechanism.mounts.get(WORLD, ()) if isinstance(sheet.mechanism.graph.vertices.get(view.mounted), Light)]
     world = sheet.mechanism.notation(ROOT, notations.WORLD) or ("default" if lights and not sheet.from_sdf else None)
     place = root if world is None else root.add("world", name=world)
     _add_models(place, sheet)

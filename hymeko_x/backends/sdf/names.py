@@ -109,10 +109,10 @@ def _renamed_mounts(mechanism: Mechanism) -> dict[Id, Id]:
     renamed: dict[Id, Id] = {}
     names = names_in_use(mechanism)
     is_from_sdf = notations.is_from_sdf(mechanism)
-    for holder, things in _mounted(mechanism).items():
+    for holder, elements in _mounted(mechanism).items():
         scope = words.split_scope(holder.name)[0]
         taken = _names_beside(mechanism, holder)
-        for key in things:
+        for key in elements:
             inside = scope if key.name.startswith(scope) else ""
             own = key.name.removeprefix(inside)
             wanted = own if is_from_sdf else _free_of_marks(own, key.kind)
@@ -129,9 +129,9 @@ def _mounted(mechanism: Mechanism) -> dict[Id, list[Id]]:
     """The sensors, cameras and lights on each link, each joint and the world."""
     found: dict[Id, list[Id]] = {}
     for body, views in mechanism.mounts.items():
-        things = [view.thing for view in views if _is_written(mechanism, view.thing)]
-        if things:
-            found[body] = things
+        elements = [view.mounted for view in views if _is_written(mechanism, view.mounted)]
+        if elements:
+            found[body] = elements
     for _, _, arcs in mechanism.edges(Sense):
         ends = [arc.target for arc in arcs if arc.sign > 0 and arc.target.kind in ("joint", "loop")]
         for arc in arcs:

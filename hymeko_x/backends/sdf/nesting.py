@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism
 
 
-class Nesting(NamedTuple):
+class ModelNesting(NamedTuple):
     """The frame of each model that is in another one, by the scope of its elements (``a::b::``), and what elements are connected to."""
 
     models: Mapping[str, Id]
@@ -28,12 +28,12 @@ class Nesting(NamedTuple):
         return scope
 
 
-def nesting_of(mechanism: Mechanism) -> Nesting:
+def nesting_of(mechanism: Mechanism) -> ModelNesting:
     """The models in models that names tell of.
 
     The frame of such a model is on a link of it, and the models around it have frames as well; other names with ``::`` are no models.
     """
-    bodies = {view.thing: view.body for views in mechanism.mounts.values() for view in views}
+    bodies = {view.mounted: view.body for views in mechanism.mounts.values() for view in views}
     frames = [(*words.split_scope(key.name), key) for key, _ in mechanism.vertices(Frame)]
     models: dict[str, Id] = {}
     for scope, own, key in sorted(frames):  # a model comes before those in it
@@ -41,7 +41,7 @@ def nesting_of(mechanism: Mechanism) -> Nesting:
         is_inside = bool(scope) and (not around or around in models)
         if own == words.MODEL_FRAME and is_inside and bodies.get(key, ROOT).name.startswith(scope):
             models[scope] = key
-    return Nesting(models, _connected(mechanism, bodies) if models else {})
+    return ModelNesting(models, _connected(mechanism, bodies) if models else {})
 
 
 def _connected(mechanism: Mechanism, bodies: Mapping[Id, Id]) -> dict[Id, list[Id]]:

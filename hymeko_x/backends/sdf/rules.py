@@ -169,8 +169,8 @@ def put_world_geometry_on_a_link(mechanism: Mechanism, context: Context) -> Mech
     moved: dict[Id, RobotEdge] = {}
     for key, edge in mechanism.graph.edges.items():
         if isinstance(edge.data, Shape | Mount) and any(arc.target == WORLD and arc.sign > 0 for arc in edge.arcs):
-            thing = next((mechanism.graph.vertices.get(arc.target) for arc in edge.arcs if arc.sign < 0), None)
-            if not isinstance(thing, Light) and not ((in_world or notations.is_from_sdf(mechanism)) and isinstance(thing, Frame)):
+            mounted = next((mechanism.graph.vertices.get(arc.target) for arc in edge.arcs if arc.sign < 0), None)
+            if not isinstance(mounted, Light) and not ((in_world or notations.is_from_sdf(mechanism)) and isinstance(mounted, Frame)):
                 moved[key] = edge
     if not moved:
         return mechanism

@@ -45,8 +45,8 @@ def in_models(mechanism: Mechanism, original: Mechanism) -> dict[Id, Id]:
 
 def _scopes(mechanism: Mechanism) -> dict[Id, str]:
     """The scope of the model of each body."""
-    things = [(view.body, *words.split_scope(view.thing.name)) for views in mechanism.mounts.values() for view in views]
-    of_frames = {body: scope for body, scope, own in things if own == words.MODEL_FRAME}
+    elements = [(view.body, *words.split_scope(view.mounted.name)) for views in mechanism.mounts.values() for view in views]
+    of_frames = {body: scope for body, scope, own in elements if own == words.MODEL_FRAME}
     found: dict[Id, str] = {}
     for body in mechanism.depth_first():
         above = mechanism.parent_joint.get(body)

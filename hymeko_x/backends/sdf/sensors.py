@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf.sensors import CAMERA_TURN, DOWN, HFOV, IMAGE, LIGHTS
-from hymeko_x.formats.sdf.values import COLOUR, NUMBER, VECTOR, BadText, Field
+from hymeko_x.formats.sdf.values import COLOUR, NUMBER, VECTOR, BadText, ValueField
 from hymeko_x.ir.parts import Camera, Light, Sensor
 from hymeko_x.ir.values import NO_ROTATION, Pose, compose, inverse, quat_from_z, scaled, unit
 from hymeko_x.xml.printing import Tag
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from hymeko_x.backends.sdf.sheet import SdfSheet
     from hymeko_x.ir.mechanism import Id, MountView
 
-_RATE = Field("update_rate", "rate", NUMBER)
+_RATE = ValueField("update_rate", "rate", NUMBER)
 
 
 def sensor_tag(view: MountView, scope: str, body: Id, sheet: SdfSheet) -> Tag:
     """The <sensor> of a sensor or a camera on a link."""
-    key = view.thing
+    key = view.mounted
     part = sheet.mechanism.graph.vertices[key]
     tag = Tag("sensor", {"name": _name(key, scope, sheet), "type": part.kind if isinstance(part, Sensor) else "camera"})
     turn = Pose(quat=CAMERA_TURN) if isinstance(part, Camera) else Pose()
@@ -57,15 +57,17 @@ def _add_camera(tag: Tag, camera: Camera, key: Id, sheet: SdfSheet) -> None:
         if own is not None and abs(NUMBER.read(own) - across) < 1e-12:
             tag.add("horizontal_fov").children.append(own)
         elif own is not None or not sheet.from_sdf or abs(across - HFOV.default) > 1e-12:
-            sheet.put(tag, Field(HFOV.path, HFOV.name, NUMBER), across, {})
+            sheet.put(tag, ValueField(HFOV.path, HFOV.name, NUMBER), across, {})
     for field, value in zip(IMAGE, (width, height), strict=True):
         if camera.resolution is not None:
-            sheet.put(tag, Field(field.path, field.name, NUMBER, field.default if sheet.from_sdf else None), float(value), texts, "camera/")
+            sheet.put(
+                tag, ValueField(field.path, field.name, NUMBER, field.default if sheet.from_sdf else None), float(value), texts, "camera/"
+            )
 
 
 def light_tag(view: MountView, scope: str, body: Id, sheet: SdfSheet) -> Tag:
     """The <light> of a light; its direction is along its own -z unless its author gave it another one."""
-    key = view.thing
+    key = view.mounted
     light = sheet.mechanism.vertex(key, Light)
     texts = sheet.written(key)
     tag = Tag("light", {"name": _name(key, scope, sheet), "type": LIGHTS.get(light.kind, light.kind if sheet.from_sdf else "point")})

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import materials
-from hymeko_x.formats.sdf.values import COLOUR, NUMBER, PAIR, SOLIDS, VECTOR, BadText, Field
+from hymeko_x.formats.sdf.values import COLOUR, NUMBER, PAIR, SOLIDS, VECTOR, BadText, ValueField
 from hymeko_x.ir.parts import Material, Mesh, MeshShape, NoShape, Plane, Role
 from hymeko_x.ir.values import Pose, compose, inverse, quat_from_z, unit
 from hymeko_x.xml.printing import Tag
@@ -23,11 +23,11 @@ _MISSING = object()
 """No value equals it: what has no default is always written."""
 _SOLIDS = {kind: (name, fields, tuple([field._replace(default=_MISSING) for field in fields])) for name, (kind, fields) in SOLIDS.items()}
 """The element of each geometry, its fields, and those of geometries from other formats, which are always written."""
-_MU = Field("surface/friction/ode/mu", "friction", NUMBER)
-_DENSITY = Field("density", "density", NUMBER)
-_SCALE = Field("scale", "scale", VECTOR, (1.0, 1.0, 1.0))
-_DIFFUSE = Field("diffuse", "rgba", COLOUR)
-_AMBIENT = Field("ambient", "rgba", COLOUR)
+_MU = ValueField("surface/friction/ode/mu", "friction", NUMBER)
+_DENSITY = ValueField("density", "density", NUMBER)
+_SCALE = ValueField("scale", "scale", VECTOR, (1.0, 1.0, 1.0))
+_DIFFUSE = ValueField("diffuse", "rgba", COLOUR)
+_AMBIENT = ValueField("ambient", "rgba", COLOUR)
 
 
 def shape_tag(view: ShapeView, name: str, number: int, scope: str, sheet: SdfSheet) -> Tag:
@@ -82,7 +82,7 @@ def _add_plane(tag: Tag, size: tuple[float, float], normal: str | None, texts: M
     if normal is not None:
         tag.add("normal").children.append(normal)
     shown = (size[0] or 1.0, size[1] or 1.0)
-    sheet.put(tag, Field("size", "size", PAIR, (1.0, 1.0) if sheet.from_sdf else _MISSING), shown, texts, "geometry/plane/")
+    sheet.put(tag, ValueField("size", "size", PAIR, (1.0, 1.0) if sheet.from_sdf else _MISSING), shown, texts, "geometry/plane/")
 
 
 def _add_mesh(tag: Tag, view: ShapeView, texts: Mapping[str, str], sheet: SdfSheet) -> None:
@@ -116,4 +116,4 @@ def _add_material(visual: Tag, view: ShapeView, texts: Mapping[str, str], sheet:
         if use in images:
             metal.add(name).children.append(escaped(images[use]))
     for name, value in numbers:
-        sheet.put(metal, Field(name, name, NUMBER), value, texts, "material/pbr/metal/")
+        sheet.put(metal, ValueField(name, name, NUMBER), value, texts, "material/pbr/metal/")

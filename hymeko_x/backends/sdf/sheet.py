@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.assets.written import files_of_meshes
-from hymeko_x.backends.sdf.frames import Places
+from hymeko_x.backends.sdf.frames import ZeroPoses
 from hymeko_x.backends.sdf.gears import gears
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from hymeko_x.backends.sdf.gears import Gear
-    from hymeko_x.formats.sdf.values import Codec, Field
+    from hymeko_x.formats.sdf.values import Codec, ValueField
     from hymeko_x.ir.mechanism import Extra, Id, JointView, Mechanism, RobotArc
 
 _PLACEMENTS = ("@placement_frame", "model/@placement_frame", "world/model/@placement_frame")
@@ -41,7 +41,7 @@ class SdfSheet:
         self.mechanism = mechanism
         self.within = within
         self.from_sdf = notations.is_from_sdf(mechanism)
-        self.places = Places(mechanism)
+        self.places = ZeroPoses(mechanism)
         self.declared: dict[str, str] = {}
 
     @cached_property
@@ -183,7 +183,7 @@ class SdfSheet:
         """The texts of an element's values, by path, that its author wrote in a way of their own."""
         return (self.mechanism.notation(key, notations.WRITTEN) or {}) if self.from_sdf else {}
 
-    def put(self, tag: Tag, field: Field, value: Any, texts: Mapping[str, str], prefix: str = "") -> None:
+    def put(self, tag: Tag, field: ValueField, value: Any, texts: Mapping[str, str], prefix: str = "") -> None:
         """Write a value below a tag: as its author wrote it where that means the same, and not at all where it is the default."""
         own = texts.get(f"{prefix}{field.path}") if texts else None
         if own is None and value == field.default:
@@ -196,7 +196,7 @@ class SdfSheet:
             tag = tag.child(step)
         self.add_text(tag, last, text)
 
-    def put_all(self, tag: Tag, name: str, values: Iterable[tuple[Field, Any]], texts: Mapping[str, str], prefix: str) -> None:
+    def put_all(self, tag: Tag, name: str, values: Iterable[tuple[ValueField, Any]], texts: Mapping[str, str], prefix: str) -> None:
         """Write values as :meth:`put` does, into a new child of a tag; no child without anything in it."""
         place = Tag(name, {})
         for field, value in values:

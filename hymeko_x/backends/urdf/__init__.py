@@ -31,4 +31,4 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
         root = Tag(made.root.name, made.root.attributes, [*made.root.children, *residue_elements(residue)])
         return "\n".join(['<?xml version="1.0"?>', *made.before, *render(root), *made.after, ""]).encode()
 
-    return Package(printed(""), made.meshes, carry=printed)
+    return Package(printed(""), made.meshes, with_residue=printed)

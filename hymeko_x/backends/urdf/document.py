@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
 
 
-class Document(NamedTuple):
+class UrdfDocument(NamedTuple):
     """The root, its elements, ready lines before and after it, and mesh files beside it.
 
     Each of the ``elements`` is made when it is asked for, so that those of a large robot are never there all at once.
@@ -37,7 +37,7 @@ class Document(NamedTuple):
     meshes: dict[str, bytes]
 
 
-def document(mechanism: Mechanism, within: str = "", prefix: str = "") -> Document:
+def document(mechanism: Mechanism, within: str = "", prefix: str = "") -> UrdfDocument:
     """The URDF document of a mechanism; tags at top level have their owner. Files beside it are in the folder ``within``,
     and their paths stand behind the ``prefix``.
 
@@ -47,11 +47,11 @@ def document(mechanism: Mechanism, within: str = "", prefix: str = "") -> Docume
     sheet = UrdfSheet(mechanism, _declared(root), within, prefix)
     extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.FORMAT, COMMENT)]
     meshes = contents_of(mechanism, sheet.mesh_files, sheet.materials.textures)
-    return Document(root, _merged(extras, sheet), _around(extras, PRECEDING, sheet), _around(extras, FOLLOWING, sheet), meshes)
+    return UrdfDocument(root, _merged(extras, sheet), _around(extras, PRECEDING, sheet), _around(extras, FOLLOWING, sheet), meshes)
 
 
 def residue_elements(text: str, *, readable: bool = True) -> list[str]:
-    """The elements that carry a residue; ``readable`` allows CDATA, which xacro would not unescape."""
+    """The elements that contain a residue; ``readable`` allows CDATA, which xacro would not unescape."""
     texts = [f"<![CDATA[\n{part}]]>" if readable and "]]>" not in part else escaped_lines(part) for part in parts_of_text(text)]
     return [f'<{words.RESIDUE} xmlns:hymeko="{words.RESIDUE_NAMESPACE}">{part}</{words.RESIDUE}>' for part in texts]
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import JointView, Mechanism
     from hymeko_x.rewrite.context import Options
     from hymeko_x.source import Files, Package
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
 def srdf_beside(printed: Mechanism, _package: Package, _files: Files, options: Options) -> Mapping[str, bytes]:
@@ -53,7 +53,7 @@ def _extras(printed: Mechanism, names: Mapping[Id, Id]) -> Iterator[Tag]:
             yield tag_of(top)
 
 
-def tag_of(node: Node) -> Tag:
+def tag_of(node: XmlNode) -> Tag:
     """A node with everything in it as a tag. Not recursive."""
     top = Tag(node.tag, dict(node.attributes))
     stack = [(node, top)]

@@ -1,6 +1,6 @@
 """USD out: one stage in metres and kilograms with z up, flat bodies, joint frames on both sides, drives and materials.
 
-The residue of the root layer carries parts that USD cannot represent, and the digits that single precision cuts off.
+The residue of the root layer contains parts that USD cannot represent, and the digits that single precision cuts off.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     root = layers.pop("")
     main = root.ExportToString()
     beside = {name: encoded(layer) if name.endswith(".usdc") else layer.ExportToString().encode() for name, layer in layers.items()}
-    return Package(main.encode(), beside, carry=lambda residue: text_with_residue(root, main, residue))
+    return Package(main.encode(), beside, with_residue=lambda residue: text_with_residue(root, main, residue))
 
 
 def write_layers(mechanism: Mechanism, options: Options, report: Report, suffix: str) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from hymeko_x.ir.parts import Actuator, DofKind, Drive
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
+    from hymeko_x.backends.usd.sheet import UsdSheet, WrittenPrim
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Dof, Parameters
 
@@ -127,7 +127,7 @@ def _target(sheet: UsdSheet, arc: RobotArc) -> Any | None:
     return home if sheet.prims[home].kind.startswith("Physics") else None
 
 
-def _write_targets(spec: Prim, targets: list[tuple[RobotArc, Any]], drive: Drive) -> None:
+def _write_targets(spec: WrittenPrim, targets: list[tuple[RobotArc, Any]], drive: Drive) -> None:
     roles = {"slider", "reference"}
     for place, (arc, target) in enumerate(targets):
         name = table.RELATIONSHIPS[arc.role] if arc.role in roles else table.TARGET
@@ -140,7 +140,7 @@ def _write_targets(spec: Prim, targets: list[tuple[RobotArc, Any]], drive: Drive
         put(spec, "mjc:jointInParent", T.Bool, True)
 
 
-def _write_parameters(spec: Prim, parameters: Parameters) -> None:
+def _write_parameters(spec: WrittenPrim, parameters: Parameters) -> None:
     """The parameters that the schema has an attribute for."""
     for name, value in parameters:
         if name in table.TOKENS and isinstance(value, str):

@@ -31,10 +31,10 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
 
 
 def _packed(files: Mapping[str, bytes]) -> Package:
-    """The files in one archive, which takes more of them in, and carries a residue in the first one."""
+    """The files in one archive, which takes more of them in, and contains a residue in the first one."""
     return Package(
         zipped(files),
-        carry=lambda residue: zipped({**files, _MAIN: crate_with_residue(files[_MAIN], residue)}),
+        with_residue=lambda residue: zipped({**files, _MAIN: crate_with_residue(files[_MAIN], residue)}),
         enclose=lambda others: _packed({**files, **others}),
     )
 

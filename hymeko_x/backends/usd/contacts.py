@@ -10,7 +10,7 @@ from hymeko_x.formats.usd.contacts import BY_GROUPS, GROUPED
 from hymeko_x.ir.parts import Contact, Role
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
+    from hymeko_x.backends.usd.sheet import UsdSheet, WrittenPrim
 
 _BINDING = "material:binding:physics"
 
@@ -34,7 +34,7 @@ def write_contacts(sheet: UsdSheet) -> None:
 
 def write_frictions(sheet: UsdSheet) -> None:
     """One physics material for all colliders of one friction; those that had a material of their own keep that."""
-    users: dict[tuple[float, ...], list[Prim]] = {}
+    users: dict[tuple[float, ...], list[WrittenPrim]] = {}
     for view in sheet.mechanism.every_shape():
         extras = sheet.mechanism.extras.get(view.id, ())
         is_bound = any(extra.format == words.FORMAT and _BINDING in extra.text for extra in extras)

@@ -11,7 +11,7 @@ from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Coupling, DofKind
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
+    from hymeko_x.backends.usd.sheet import UsdSheet, WrittenPrim
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Dof
 
@@ -21,9 +21,9 @@ class _Follower(NamedTuple):
 
     key: Id
     coupling: Coupling
-    spec: Prim
+    spec: WrittenPrim
     dof: Dof
-    leader: Prim
+    leader: WrittenPrim
     weight: tuple[float, ...]
 
 
@@ -63,7 +63,7 @@ def _follower(sheet: UsdSheet, key: Id, coupling: Coupling, arcs: tuple[RobotArc
     return _Follower(key, coupling, here[0], here[2], there[0], weight)
 
 
-def _first_leader(found: _Follower, followers: dict[Any, _Follower]) -> tuple[Prim, tuple[float, ...]]:
+def _first_leader(found: _Follower, followers: dict[Any, _Follower]) -> tuple[WrittenPrim, tuple[float, ...]]:
     """The leader that is no follower, and the coefficients with respect to it: a + b (c + d x) = (a + b c) + b d x."""
     leader, weight = found.leader, found.weight
     passed = {found.spec.path}
@@ -76,7 +76,7 @@ def _first_leader(found: _Follower, followers: dict[Any, _Follower]) -> tuple[Pr
     return (leader, weight) if leader.path not in passed else (found.leader, found.weight)
 
 
-def _write_mimic(names: words.Mimic, spec: Any, leader: Any, dof: Dof, weight: tuple[float, ...], is_active: bool) -> None:
+def _write_mimic(names: words.MimicSchema, spec: Any, leader: Any, dof: Dof, weight: tuple[float, ...], is_active: bool) -> None:
     apply(spec, names.schema)
     point(spec, names.leader, leader)
     constant = weight[0] if weight else 0.0

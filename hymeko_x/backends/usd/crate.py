@@ -18,4 +18,4 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The mechanism as a crate file. Textures are not part of it: `assets.pack` returns them."""
     crates = {name: encoded(layer) for name, layer in write_layers(mechanism, options, report, ".usdc").items()}
     main = crates.pop("")
-    return Package(main, crates, carry=lambda residue: crate_with_residue(main, residue))
+    return Package(main, crates, with_residue=lambda residue: crate_with_residue(main, residue))

@@ -249,7 +249,7 @@ def _loop_type(sheet: UsdSheet, key: Id, loop: Loop) -> str:
 
 def _frames(sheet: UsdSheet) -> dict[Id, End]:
     """The body and pose of each mounted element."""
-    return {view.thing: (view.body, view.pose) for views in sheet.mechanism.mounts.values() for view in views}
+    return {view.mounted: (view.body, view.pose) for views in sheet.mechanism.mounts.values() for view in views}
 
 
 def _closure_end(arc: RobotArc, frames: dict[Id, End]) -> End:

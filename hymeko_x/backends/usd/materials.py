@@ -12,7 +12,7 @@ from hymeko_x.ir.mechanism import end_of
 from hymeko_x.ir.parts import Layer, Material, Texture
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
+    from hymeko_x.backends.usd.sheet import UsdSheet, WrittenPrim
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Rgba
 
@@ -76,7 +76,7 @@ def _shader(sheet: UsdSheet, spec: Any, name: str, kind: str) -> Any:
     return shader
 
 
-def bind(sheet: UsdSheet, spec: Prim, material: Id) -> None:
+def bind(sheet: UsdSheet, spec: WrittenPrim, material: Id) -> None:
     """Show a prim in a material."""
     apply(spec, "MaterialBindingAPI")
     point(spec, "material:binding", sheet.paths[material])

@@ -17,7 +17,7 @@ from hymeko_x.meshes.submesh import LoadedMesh
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from hymeko_x.backends.usd.sheet import Prim, Triangles, UsdSheet
+    from hymeko_x.backends.usd.sheet import Triangles, UsdSheet, WrittenPrim
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.notations import Notation
     from hymeko_x.ir.values import Vec3
@@ -52,7 +52,7 @@ def write_mesh_shape(sheet: UsdSheet, spec: Any, view: ShapeView, users: dict[Id
     return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
 
 
-def _write_attributes(spec: Prim, mechanism: Mechanism, shape: Id, mesh: Mesh, surface: Triangles) -> None:
+def _write_attributes(spec: WrittenPrim, mechanism: Mechanism, shape: Id, mesh: Mesh, surface: Triangles) -> None:
     """Normals and texture coordinates of a mesh, as far as the prim of the shape gets them."""
     normals = normals_of(mesh)
     if normals is not None and has_own(mechanism, shape, words.CORNER_NORMALS):
@@ -87,7 +87,7 @@ def _write_prototype(sheet: UsdSheet, shape: Id, key: Id, mesh: Mesh, surface: T
     return spec.path
 
 
-def write_triangles(prim: Prim, surface: Triangles) -> None:
+def write_triangles(prim: WrittenPrim, surface: Triangles) -> None:
     """Points in single precision, triangles, and no subdivision."""
     points, faces = surface
     prim.kind = "Mesh"
@@ -100,20 +100,20 @@ def write_triangles(prim: Prim, surface: Triangles) -> None:
     put(prim, "extent", T.Float3Array, Vt.Vec3fArray.FromNumpy(box))
 
 
-def write_normals(prim: Prim, surface: Triangles) -> None:
+def write_normals(prim: WrittenPrim, surface: Triangles) -> None:
     """One normal for each triangle, for programs that compute none of their own; a degenerate triangle has some unit vector."""
     put(prim, "normals", T.Normal3fArray, Vt.Vec3fArray.FromNumpy(face_normals(*surface)))
     prim.interpolation["normals"] = "uniform"
 
 
-def _write_corners(prim: Prim, name: str, kind: Any, table: Any, rows: NDArray[np.int32]) -> None:
+def _write_corners(prim: WrittenPrim, name: str, kind: Any, table: Any, rows: NDArray[np.int32]) -> None:
     """A table of values, and its row for each corner of the triangles."""
     put(prim, name, kind, table)
     put(prim, f"{name}:indices", T.IntArray, Vt.IntArray.FromNumpy(rows))
     prim.interpolation[name] = "faceVarying"
 
 
-def write_subsets(sheet: UsdSheet, spec: Prim, view: ShapeView) -> None:
+def write_subsets(sheet: UsdSheet, spec: WrittenPrim, view: ShapeView) -> None:
     """The triangles of a mesh that show other materials, each a prim below it."""
     surface = sheet.triangles.get(view.mesh) if view.mesh is not None else None
     count = 0 if surface is None else len(surface[1]) // 3

@@ -14,7 +14,7 @@ from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Camera, Frame, Light, Tendon
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
+    from hymeko_x.backends.usd.sheet import UsdSheet, WrittenPrim
 
 _SITE_SIZE = 0.005
 """The radius in m of a site without a size in MJCF."""
@@ -27,21 +27,21 @@ def write_mounts(sheet: UsdSheet) -> None:
     """
     knots = {arc.target for _, _, arcs in sheet.mechanism.edges(Tendon) for arc in arcs if arc.target.kind == "frame"}
     for view in chain.from_iterable(sheet.mechanism.mounts.values()):
-        part = sheet.mechanism.graph.vertices.get(view.thing)
-        if not isinstance(part, Frame | Camera | Light) or view.thing in sheet.paths:
+        part = sheet.mechanism.graph.vertices.get(view.mounted)
+        if not isinstance(part, Frame | Camera | Light) or view.mounted in sheet.paths:
             continue
         home = sheet.root if view.body == WORLD else sheet.paths.get(view.body)
         if home is None:
             continue
-        spec = sheet.add_prim(view.thing, home, _type_of(part), below=view.body != WORLD)
+        spec = sheet.add_prim(view.mounted, home, _type_of(part), below=view.body != WORLD)
         sheet.paths[view.id] = spec.path
         sheet.set_pose(spec, view.pose, on=view.body)
-        _write_mounted(spec, part, sheet.mechanism.notation(view.thing, words.SITE))
-        if isinstance(part, Frame) and view.thing in knots and sheet.mechanism.notation(view.thing, words.PATH) is None:
+        _write_mounted(spec, part, sheet.mechanism.notation(view.mounted, words.SITE))
+        if isinstance(part, Frame) and view.mounted in knots and sheet.mechanism.notation(view.mounted, words.PATH) is None:
             _write_ball(spec, part.size[0] if part.size and part.size[0] > 0.0 else _SITE_SIZE)
 
 
-def _write_ball(spec: Prim, radius: float) -> None:
+def _write_ball(spec: WrittenPrim, radius: float) -> None:
     """The shape of a site, of this radius in m."""
     spec.kind = "Sphere"
     put(spec, "radius", T.Double, radius)

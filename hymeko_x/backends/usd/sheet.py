@@ -43,7 +43,7 @@ _UNIFORM = frozenset(
 )
 
 
-class Prim(Struct, eq=False):
+class WrittenPrim(Struct, eq=False):
     """A prim in the making: its type, metadata, API schemas, attributes (type and value), and the targets of its relationships.
 
     ``connections`` lead an attribute to that whose value it takes; ``interpolation`` are the attributes with values
@@ -67,7 +67,7 @@ class Prim(Struct, eq=False):
         return str(self.path.name)
 
 
-def author(prims: Iterable[Prim], layer: Any) -> None:
+def author(prims: Iterable[WrittenPrim], layer: Any) -> None:
     """Write every prim into the layer, parents before their children.
 
     No spec is kept: of a layer of which many were held at once the text takes longer per prim the more there were.
@@ -132,7 +132,7 @@ class UsdSheet(Struct):
     element_paths: set[Any] = field(default_factory=set)
     group_paths: set[Any] = field(default_factory=set)
     groups: dict[str, Any] = field(default_factory=dict)
-    prims: dict[Any, Prim] = field(default_factory=dict)
+    prims: dict[Any, WrittenPrim] = field(default_factory=dict)
     body_shapes: dict[Id, Id] = field(default_factory=dict)
     body_scales: dict[Id, Vec3] = field(default_factory=dict)
     triangles: dict[Id, Triangles | None] = field(default_factory=dict)
@@ -148,12 +148,12 @@ class UsdSheet(Struct):
         """An unused path below a prim for something of this name."""
         return parent.AppendChild(free_name(valid_name(name), lambda free: parent.AppendChild(free) in self.prims, "_"))
 
-    def define(self, path: Any, kind: str, name: str = "") -> Prim:
+    def define(self, path: Any, kind: str, name: str = "") -> WrittenPrim:
         """A new prim of this type; missing ancestors become Xforms. ``name`` is the display name."""
         if path.GetParentPath() not in self.prims:
             for above in path.GetPrefixes()[:-1]:
-                self.prims.setdefault(above, Prim(above))
-        prim = self.prims.setdefault(path, Prim(path))
+                self.prims.setdefault(above, WrittenPrim(above))
+        prim = self.prims.setdefault(path, WrittenPrim(path))
         prim.kind = kind
         if name and name != path.name:
             prim.info["displayName"] = name
@@ -172,7 +172,7 @@ class UsdSheet(Struct):
         is_free = path not in self.prims or not self.is_made(path)
         return path if path.IsAbsoluteRootOrPrimPath() and is_free else None
 
-    def add_prim(self, key: Id, parent: Any, kind: str, name: str | None = None, *, below: bool = False) -> Prim:
+    def add_prim(self, key: Id, parent: Any, kind: str, name: str | None = None, *, below: bool = False) -> WrittenPrim:
         """A new prim for an element: at its old path if it has one (for ``below`` only under the parent), else below the parent.
 
         ``parent`` is a path, or the name of one of our own groups, which is there only when something is in it.
@@ -186,14 +186,14 @@ class UsdSheet(Struct):
             own = noted.name
         return self.add_prim_at(key, path, kind, own)
 
-    def add_prim_at(self, key: Id, path: Any, kind: str, name: str | None = None) -> Prim:
+    def add_prim_at(self, key: Id, path: Any, kind: str, name: str | None = None) -> WrittenPrim:
         """A new prim at this path for an element."""
         prim = self.define(path, kind, name or key.name)
         self.paths[key] = path
         self.element_paths.add(path)
         return prim
 
-    def set_pose(self, prim: Prim, pose: Pose, scale: Vec3 | None = None, *, on: Id) -> None:
+    def set_pose(self, prim: WrittenPrim, pose: Pose, scale: Vec3 | None = None, *, on: Id) -> None:
         """Put a prim at a pose in a body's rigid frame, whatever scale the body's prim has; one in that frame has no ops."""
         within = self.body_scales.get(on)
         if pose != IDENTITY or scale is not None or within is not None:
@@ -249,28 +249,28 @@ def valid_name(name: str) -> str:
 # ---- properties ------------------------------------------------------------------------------------------------------------------
 
 
-def put(prim: Prim, name: str, kind: Any, value: Any) -> None:
+def put(prim: WrittenPrim, name: str, kind: Any, value: Any) -> None:
     """An attribute of this type; without a value it is there to be connected to."""
     prim.attributes[name] = kind, value
 
 
-def connect(prim: Prim, name: str, kind: Any, source: Prim, output: str) -> None:
+def connect(prim: WrittenPrim, name: str, kind: Any, source: WrittenPrim, output: str) -> None:
     """An attribute that takes the value of another prim's."""
     put(prim, name, kind, None)
     prim.connections[name] = source.path.AppendProperty(output)
 
 
-def point(prim: Prim, name: str, *targets: Any) -> None:
+def point(prim: WrittenPrim, name: str, *targets: Any) -> None:
     """A relationship with these targets, after those that it has."""
     prim.targets.setdefault(name, []).extend(targets)
 
 
-def apply(prim: Prim, *schemas: str) -> None:
+def apply(prim: WrittenPrim, *schemas: str) -> None:
     """Apply API schemas, with or without a plugin."""
     prim.schemas.extend(schema for schema in schemas if schema not in prim.schemas)
 
 
-def transform(prim: Prim, pose: Pose, scale: Vec3 | None = None, *, reset: bool = False, within: Vec3 | None = None) -> None:
+def transform(prim: WrittenPrim, pose: Pose, scale: Vec3 | None = None, *, reset: bool = False, within: Vec3 | None = None) -> None:
     """Author a pose in m (and a scale) as translate, orient and scale ops in double precision.
 
     ``within`` is the scale of the prim above, which is undone.

@@ -14,7 +14,7 @@ from hymeko_x.ir.parts import Tendon
 from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, wrong_path
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
+    from hymeko_x.backends.usd.sheet import UsdSheet, WrittenPrim
     from hymeko_x.ir.mechanism import RobotArc
 
 
@@ -79,7 +79,7 @@ def _path(sheet: UsdSheet, arcs: tuple[RobotArc, ...]) -> _Path | None:
     return path
 
 
-def _write_path(spec: Prim, tendon: Tendon, path: _Path) -> None:
+def _write_path(spec: WrittenPrim, tendon: Tendon, path: _Path) -> None:
     point(spec, table.PATH, *path.steps.prims)
     put(spec, table.INDICES, T.IntArray, Vt.IntArray(path.steps.indices))
     if tendon.kind == FIXED:
@@ -95,7 +95,7 @@ def _write_path(spec: Prim, tendon: Tendon, path: _Path) -> None:
 # ---- limits, mechanics, appearance -----------------------------------------------------------------------------------------------
 
 
-def _write_behaviour(spec: Prim, tendon: Tendon) -> None:
+def _write_behaviour(spec: WrittenPrim, tendon: Tendon) -> None:
     """Limits, mechanics and appearance; defaults of the schema are left out."""
     lower, upper = tendon.limits.lower, tendon.limits.upper
     if upper is not None:
@@ -112,7 +112,7 @@ def _write_behaviour(spec: Prim, tendon: Tendon) -> None:
         put(spec, table.COLOUR, T.Color4f, Gf.Vec4f(*tendon.rgba))
 
 
-def _write_parameter(spec: Prim, name: str, value: float | str | tuple[float, ...]) -> None:
+def _write_parameter(spec: WrittenPrim, name: str, value: float | str | tuple[float, ...]) -> None:
     """A parameter that the schema has an attribute for."""
     numbers = () if isinstance(value, str) else value if isinstance(value, tuple) else (value,)
     attribute = table.attribute(name)

@@ -18,7 +18,7 @@ from hymeko_x.formats.xacro import macros_file
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.urdf.document import Document
+    from hymeko_x.backends.urdf.document import UrdfDocument
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.rewrite.context import Options
@@ -35,15 +35,15 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     factored = factor(forms, DIALECT)
     if not factored.macros or not options.split:
         lines = print_file(plain, factored, placed(factored, remarks))
-        return Package(_file(lines, plain), plain.meshes, carry=lambda residue: _file(lines, plain, residue))
+        return Package(_file(lines, plain), plain.meshes, with_residue=lambda residue: _file(lines, plain, residue))
     beside = f"{options.within}{macros_file(mechanism.name)}"
     lines = print_file(plain, factored, placed(factored, remarks), beside)
     files = {**plain.meshes, beside: print_macros(plain, factored, placed(factored, remarks)).encode()}
-    return Package(_file(lines, plain), files, carry=lambda residue: _file(lines, plain, residue))
+    return Package(_file(lines, plain), files, with_residue=lambda residue: _file(lines, plain, residue))
 
 
-def _file(lines: list[str], plain: Document, residue: str = "") -> bytes:
+def _file(lines: list[str], plain: UrdfDocument, residue: str = "") -> bytes:
     """The file with the end of its root, and before that a residue in which there is nothing for xacro to evaluate."""
     text = re.sub(r"\$+(?=[{(])", r"\g<0>$", residue)
-    carried = [f"  {element}" for element in residue_elements(text, readable=False)]
-    return "\n".join([*lines, *carried, "</robot>", *plain.after, ""]).encode()
+    kept = [f"  {element}" for element in residue_elements(text, readable=False)]
+    return "\n".join([*lines, *kept, "</robot>", *plain.after, ""]).encode()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from xml.parsers import expat
 
 from hymeko_x.backends.xacro.spelling import CONSTANTS
-from hymeko_x.factor.forms import Dialect, Element
+from hymeko_x.factor.forms import Dialect, FormElement
 from hymeko_x.formats.xacro import PREFIX, TAKEN, survives
 from hymeko_x.xml.text import unescaped
 
@@ -36,19 +36,19 @@ class _Open:
     def __init__(self, tag: str, leaves: tuple[tuple[str, str], ...], hint: str = "") -> None:
         self.tag = tag
         self.leaves = leaves
-        self.kids: list[Element] = []
+        self.kids: list[FormElement] = []
         self.hint = hint
 
-    def closed(self) -> Element:
+    def closed(self) -> FormElement:
         kids = self.kids
         if len(kids) == 1 and kids[0].tag == TEXT:
-            return Element(self.tag, (*self.leaves, ("", kids[0].leaves[0][1])), (), self.hint)
-        return Element(self.tag, self.leaves, tuple(kids), self.hint)
+            return FormElement(self.tag, (*self.leaves, ("", kids[0].leaves[0][1])), (), self.hint)
+        return FormElement(self.tag, self.leaves, tuple(kids), self.hint)
 
 
-def top_level(elements: Iterable[Tag | str], mechanism: Mechanism) -> tuple[list[Element], Remarks]:
+def top_level(elements: Iterable[Tag | str], mechanism: Mechanism) -> tuple[list[FormElement], Remarks]:
     """The content of the root element: forms, and the comments before each of them."""
-    forms: list[Element] = []
+    forms: list[FormElement] = []
     remarks: Remarks = {}
     for child in elements:
         if isinstance(child, str) and child.startswith("<!--"):
@@ -61,7 +61,7 @@ def top_level(elements: Iterable[Tag | str], mechanism: Mechanism) -> tuple[list
     return forms, remarks
 
 
-def _form(tag: Tag, hint: str) -> Element:
+def _form(tag: Tag, hint: str) -> FormElement:
     """A tag with everything in it. URDF's own tags are a few levels deep; foreign text is parsed without recursion."""
     made = _Open(tag.name, tuple([(name, _as_xacro_prints(name, text)) for name, text in tag.attributes.items()]), hint)
     for child in tag.children:
@@ -78,15 +78,15 @@ def _as_xacro_prints(name: str, text: str) -> str:
     return text if name in _WORDS or "e-" not in text else _SMALL.sub(r"\g<1>0\2", text)
 
 
-def _parsed(text: str) -> list[Element]:
+def _parsed(text: str) -> list[FormElement]:
     """Ready text as forms: an element with what is in it, words, or nothing for a comment."""
     if not text.startswith("<"):
         return _words(unescaped(text))
     return _Reader(text).root.kids
 
 
-def _words(text: str) -> list[Element]:
-    return [Element(TEXT, (("", text.strip()),))] if text.strip() else []
+def _words(text: str) -> list[FormElement]:
+    return [FormElement(TEXT, (("", text.strip()),))] if text.strip() else []
 
 
 class _Reader:
@@ -118,11 +118,11 @@ class _Reader:
 
     def _instruction(self, target: str, words: str) -> None:
         self._flush()
-        self._stack[-1].kids.append(Element(INSTRUCTION, (("", f"{target} {words}"),)))
+        self._stack[-1].kids.append(FormElement(INSTRUCTION, (("", f"{target} {words}"),)))
 
     def _comment(self, words: str) -> None:
         self._flush()
-        self._stack[-1].kids.append(Element(f"<!--{words}-->"))
+        self._stack[-1].kids.append(FormElement(f"<!--{words}-->"))
 
     def _flush(self) -> None:
         self._stack[-1].kids += _words("".join(self._texts))

@@ -13,16 +13,16 @@ from hymeko_x.xml.text import escaped
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from hymeko_x.backends.urdf.document import Document
+    from hymeko_x.backends.urdf.document import UrdfDocument
     from hymeko_x.backends.xacro.remarks import Placed
-    from hymeko_x.factor.forms import Element, Factored, Item, Macro, Parameter
+    from hymeko_x.factor.forms import Factored, FormElement, Item, Macro, MacroParameter
 
 _INDENT = "  "
 
 
-def print_file(document: Document, factored: Factored, remarks: Placed, included: str | None = None) -> list[str]:
+def print_file(document: UrdfDocument, factored: Factored, remarks: Placed, included: str | None = None) -> list[str]:
     """The lines of the file but the end of its root; where macros stand in a file that is ``included``, without them."""
-    page = Page(factored, remarks)
+    page = FileLines(factored, remarks)
     page.lines += ['<?xml version="1.0"?>', *document.before, root_start(document)]
     if included is None:
         page.definitions()
@@ -35,23 +35,23 @@ def print_file(document: Document, factored: Factored, remarks: Placed, included
     return page.lines
 
 
-def print_macros(document: Document, factored: Factored, remarks: Placed) -> str:
+def print_macros(document: UrdfDocument, factored: Factored, remarks: Placed) -> str:
     """The file that is included: properties and macros, under the prefixes that the robot declares."""
-    page = Page(factored, remarks)
+    page = FileLines(factored, remarks)
     page.lines += ['<?xml version="1.0"?>', root_start(document, "xmlns:")]
     page.definitions()
     page.lines += ["</robot>", ""]
     return "\n".join(page.lines)
 
 
-def root_start(document: Document, beginning: str = "") -> str:
+def root_start(document: UrdfDocument, beginning: str = "") -> str:
     """The start tag of the root, which declares xacro's prefix; of its attributes those whose names begin so."""
     own = {name: value for name, value in document.root.attributes.items() if name != "xmlns:xacro" and name.startswith(beginning)}
     attributes = "".join([f' {name}="{escaped(spelled(value))}"' for name, value in own.items()])
     return f'<robot{attributes} xmlns:xacro="{NAMESPACE}">'
 
 
-class Page:
+class FileLines:
     """Lines of a file under construction."""
 
     def __init__(self, factored: Factored, remarks: Placed) -> None:
@@ -124,15 +124,15 @@ def _about(macro: Macro) -> str:
     return macro.name.replace("_", " ")
 
 
-def _parameter(parameter: Parameter) -> str:
+def _parameter(parameter: MacroParameter) -> str:
     return parameter.name if parameter.default is None else f"{parameter.name}:={default(parameter.default)}"
 
 
-def _start(element: Element) -> str:
+def _start(element: FormElement) -> str:
     return f"<{element.tag}" + "".join([f' {name}="{escaped(spelled(text))}"' for name, text in element.leaves if name])
 
 
-def _leaf(element: Element) -> str:
+def _leaf(element: FormElement) -> str:
     words = next((spelled(text) for name, text in element.leaves if not name), None)
     if element.tag == TEXT:
         return escaped(words or "")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.factor.forms import Call, Element
+from hymeko_x.factor.forms import Call, FormElement
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -56,7 +56,7 @@ def _hand_down(
     """Give each item of a body the comments before it or, where it is a call, in it."""
     offset = 0
     for place, item in enumerate(body):
-        length = 1 if isinstance(item, Element) else spans[item.macro]
+        length = 1 if isinstance(item, FormElement) else spans[item.macro]
         own = {at - offset: remarks[at] for at in range(offset, offset + length) if at in remarks}
         if isinstance(item, Call):
             waiting.setdefault(item.macro, []).append(((name, place), own))

@@ -9,7 +9,7 @@ from msgspec import Struct
 from hymeko_x.compare.contents import Contents
 from hymeko_x.draw.attempt import attempt
 from hymeko_x.draw.graph.picture import picture
-from hymeko_x.draw.render import Look, choose_backend, is_drawn
+from hymeko_x.draw.render import PictureOptions, choose_backend, is_drawn
 from hymeko_x.reporting.summary import kept_line, minor_line, summary_lines
 from hymeko_x.residue.measuring import losses_between_files
 from hymeko_x.residue.originals import fetcher
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from hymeko_x.compare.ledger import Loss
-    from hymeko_x.draw.pair import Pair
+    from hymeko_x.draw.pair import PicturePair
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Source
@@ -38,7 +38,7 @@ class Side(NamedTuple):
 class Drawn(NamedTuple):
     """The pictures of two robots, or why there are none."""
 
-    pair: Pair | None
+    pair: PicturePair | None
     reason: str = ""
 
 
@@ -79,11 +79,11 @@ def draw(a: Side, b: Side, size: tuple[int, int]) -> Drawn:
     return Drawn(*attempt(lambda: _pair(a, b, size)))
 
 
-def _pair(a: Side, b: Side, size: tuple[int, int]) -> Pair:
+def _pair(a: Side, b: Side, size: tuple[int, int]) -> PicturePair:
     choose_backend()
     from hymeko_x.draw.pair import Subject, pair
 
     first, second = (
         Subject(Robot(side.mechanism, side.source.files), side.source.name if is_drawn(side.format) else None) for side in (a, b)
     )
-    return pair(first, second, Look(size))
+    return pair(first, second, PictureOptions(size))

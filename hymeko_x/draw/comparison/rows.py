@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 HEADINGS = ("", "quantity", "worst", "allowed", "unit", "at", "values")
 
 
-class Row(NamedTuple):
+class CheckRow(NamedTuple):
     """One check: whether it passed, and the texts of the columns behind its mark."""
 
     passed: bool
@@ -39,15 +39,15 @@ def about(side: Side) -> str:
     return f"{side.format.name}, {bodies} bodies, {len(side.mechanism.joints)} joints"
 
 
-def check_rows(verdict: Verdict) -> list[Row]:
+def check_rows(verdict: Verdict) -> list[CheckRow]:
     """The checks, those that found a difference first."""
     return [_row(check) for check in sorted(verdict.checks, key=lambda check: check.passed)]
 
 
-def _row(check: Check) -> Row:
+def _row(check: Check) -> CheckRow:
     values = f"{check.values[0]} and {check.values[1]}" if check.values and not check.passed else ""
     cells = (check.quantity, f"{check.worst:.3g}", f"{check.allowed:.3g}", check.unit, check.at, values)
-    return Row(check.passed, tuple(map(visible, cells)))
+    return CheckRow(check.passed, tuple(map(visible, cells)))
 
 
 def finding_rows(verdict: Verdict) -> Iterator[tuple[str, ...]]:

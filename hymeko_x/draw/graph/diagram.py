@@ -26,7 +26,7 @@ _FEW_JOINTS = 12
 _AXIS = "axis"
 
 
-class Node(Struct, frozen=True):
+class DrawnNode(Struct, frozen=True):
     """A vertex (circle) or an edge (box) with its symbol, its name, and what stands below the name."""
 
     key: Id
@@ -36,7 +36,7 @@ class Node(Struct, frozen=True):
     facts: str = ""
 
 
-class Line(Struct, frozen=True):
+class DrawnArc(Struct, frozen=True):
     """One arc: its edge, its target, its direction as in :class:`hymeko_x.ir.graph.Arc`, and its weight and role as text."""
 
     edge: Id
@@ -54,8 +54,8 @@ class Diagram(Struct, frozen=True):
     """Nodes by key in order, lines in order of their edges, and what is not drawn."""
 
     name: str
-    nodes: dict[Id, Node]
-    lines: tuple[Line, ...]
+    nodes: dict[Id, DrawnNode]
+    lines: tuple[DrawnArc, ...]
     note: str = ""
 
 
@@ -65,7 +65,7 @@ def diagram(robot: Mechanism, wanted: Wanted) -> Diagram:
     edges = {key: robot.graph.edges[key] for key in chosen.edges}
     joints = [key for key, edge in edges.items() if isinstance(edge.data, parts.Joint)]
     with_axes = frozenset(joints if len(joints) <= _FEW_JOINTS else ())
-    lines = [Line(key, arc.target, arc.sign, weight(arc)) for key, edge in edges.items() for arc in edge.arcs]
+    lines = [DrawnArc(key, arc.target, arc.sign, weight(arc)) for key, edge in edges.items() for arc in edge.arcs]
     lines += [line for key in joints if key in with_axes for line in _axis_lines(key, edges[key])]
     keys = _vertices(robot, chosen, wanted) | dict.fromkeys(edges) | dict.fromkeys(line.target for line in lines)
     nodes = {key: _node(robot, key, chosen, with_axes) for key in keys}
@@ -85,20 +85,22 @@ def _vertices(robot: Mechanism, chosen: Selection, wanted: Wanted) -> dict[Id, N
     return dict.fromkeys((*chosen.bodies, *others))
 
 
-def _axis_lines(key: Id, edge: RobotEdge) -> Iterator[Line]:
+def _axis_lines(key: Id, edge: RobotEdge) -> Iterator[DrawnArc]:
     """The arcs to the directions about and along which a joint moves, as in the paper: ``+ AXIS_Z``."""
     assert isinstance(edge.data, parts.Joint)
     for dof in edge.data.dofs:
         if dof.kind not in (parts.DofKind.BALL, parts.DofKind.FREE):
             name = axis_name(dof)
-            yield Line(key, Id(_AXIS, name if name.startswith("[") else f"{name[:-1]}AXIS_{name[-1]}"), 1)
+            yield DrawnArc(key, Id(_AXIS, name if name.startswith("[") else f"{name[:-1]}AXIS_{name[-1]}"), 1)
 
 
-def _node(robot: Mechanism, key: Id, chosen: Selection, with_axes: frozenset[Id]) -> Node:
+def _node(robot: Mechanism, key: Id, chosen: Selection, with_axes: frozenset[Id]) -> DrawnNode:
     edge = robot.graph.edges.get(key)
     if edge is None:
         facts = (vertex_facts(robot.graph.vertices.get(key)), chosen.notes.get(key, ""))
-        return Node(key, False, key.kind, shown(key.name), " · ".join(filter(None, facts)))
+        return DrawnNode(key, False, key.kind, shown(key.name), " · ".join(filter(None, facts)))
     if key in with_axes and isinstance(edge.data, parts.Joint) and edge.data.dofs:
-        return Node(key, True, symbol(edge.data), shown(key.name), " · ".join(dof_text(dof, with_axis=False) for dof in edge.data.dofs))
-    return Node(key, True, symbol(edge.data), shown(key.name), edge_facts(edge.data))
+        return DrawnNode(
+            key, True, symbol(edge.data), shown(key.name), " · ".join(dof_text(dof, with_axis=False) for dof in edge.data.dofs)
+        )
+    return DrawnNode(key, True, symbol(edge.data), shown(key.name), edge_facts(edge.data))

@@ -10,7 +10,7 @@ from hymeko_x.draw.graph.letters import width
 from hymeko_x.draw.graph.svg import MARGIN, SIZE, SMALL, Canvas, fixed, tip
 
 if TYPE_CHECKING:
-    from hymeko_x.draw.graph.diagram import Diagram, Node
+    from hymeko_x.draw.graph.diagram import Diagram, DrawnNode
 
 _RADIUS = 10.0
 _GAP = 56.0
@@ -183,7 +183,7 @@ class _Picture:
         return "".join(path)
 
 
-def _box(node: Node, ports: tuple[list[_Port], list[_Port]]) -> _Box:
+def _box(node: DrawnNode, ports: tuple[list[_Port], list[_Port]]) -> _Box:
     """The measures of a hyperedge with these arcs."""
     across = max(width(node.label, SIZE) + 16, width(node.facts, SMALL)) + 20
     half = max(*(len(side) * _PORT for side in ports), 38 if node.facts else 26) / 2

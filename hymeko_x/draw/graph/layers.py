@@ -31,7 +31,7 @@ class Size(NamedTuple):
     below: float
 
 
-class Layout(Struct, frozen=True):
+class GraphLayout(Struct, frozen=True):
     """The height of every node, the left and right end of every column, and the heights at which every arc passes the columns between."""
 
     height: Sequence[float]
@@ -45,7 +45,7 @@ def columns(count: int, arcs: Sequence[tuple[int, int]]) -> dict[int, int]:
     return _columns(count, [(end, start) if turned[number] else (start, end) for number, (start, end) in enumerate(arcs)])
 
 
-def layered(sizes: Sequence[Size], column: Mapping[int, int], arcs: Sequence[tuple[int, int]], gap: float) -> Layout:
+def layered(sizes: Sequence[Size], column: Mapping[int, int], arcs: Sequence[tuple[int, int]], gap: float) -> GraphLayout:
     """Places for nodes of these sizes in these columns, with arcs from left to right by number; ``gap`` is the distance of columns."""
     points = _Points(sizes, column, arcs)
     order = _sorted(points)
@@ -55,7 +55,7 @@ def layered(sizes: Sequence[Size], column: Mapping[int, int], arcs: Sequence[tup
         width = max((sizes[node].width for node in nodes if node < len(sizes)), default=0.0)
         ends.append((left, left + width))
         left += width + gap
-    return Layout([height[node] for node in range(len(sizes))], ends, [[height[point] for point in way] for way in points.ways])
+    return GraphLayout([height[node] for node in range(len(sizes))], ends, [[height[point] for point in way] for way in points.ways])
 
 
 def _closing(count: int, arcs: Sequence[tuple[int, int]]) -> list[bool]:

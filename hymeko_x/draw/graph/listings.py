@@ -11,7 +11,7 @@ from hymeko_x.draw.graph.letters import shown
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from hymeko_x.draw.graph.diagram import Diagram, Line, Node
+    from hymeko_x.draw.graph.diagram import Diagram, DrawnArc, DrawnNode
 
 
 def dot(shape: Diagram) -> str:
@@ -57,22 +57,22 @@ def _numbers(shape: Diagram) -> dict[object, str]:
     return {key: f"n{number}" for number, key in enumerate(shape.nodes)}
 
 
-def _joined(line: Line, numbers: Mapping[object, str], arrow: str, undirected: str) -> str:
+def _joined(line: DrawnArc, numbers: Mapping[object, str], arrow: str, undirected: str) -> str:
     """The two ends of an arc along its direction, with an arrow between them."""
     ends = (numbers[line.target], numbers[line.edge])
     start, end = ends[::-1] if line.sign < 0 else ends
     return f"{start} {arrow if line.sign else undirected} {end}"
 
 
-def _words(node: Node, between: str) -> str:
+def _words(node: DrawnNode, between: str) -> str:
     return between.join(filter(None, (node.label, node.facts)))
 
 
-def _dot_label(node: Node) -> str:
+def _dot_label(node: DrawnNode) -> str:
     return _text(_words(node, "\n"))
 
 
-def _mermaid_line(line: Line, numbers: Mapping[object, str]) -> str:
+def _mermaid_line(line: DrawnArc, numbers: Mapping[object, str]) -> str:
     label = f"|{_mermaid_text(line.label)}|"
     return _joined(line, numbers, f"-->{label}", f"---{label}")
 
@@ -82,7 +82,7 @@ def _text(words: str) -> str:
     return json.dumps(words.replace("&", "&amp;"), ensure_ascii=False)
 
 
-def _mermaid_shape(node: Node) -> str:
+def _mermaid_shape(node: DrawnNode) -> str:
     words = _mermaid_text(node.label) + (f"<br/>{_mermaid_text(node.facts)}" if node.facts else "")
     return f'["{words}"]' if node.is_edge else f'(["{words}"])'
 

@@ -75,7 +75,7 @@ def homes(robot: Mechanism) -> dict[Id, Id]:
     found |= {key: view.child for key, view in robot.joints.items()}
     found |= {view.id: view.body for view in robot.every_shape()}
     for body, views in robot.mounts.items():
-        found |= {view.thing: body for view in views}
+        found |= {view.mounted: body for view in views}
     return found
 
 

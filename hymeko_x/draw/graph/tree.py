@@ -51,7 +51,7 @@ class OverRow(Struct, frozen=True):
     members: Mapping[float, int]
 
 
-class Tree(Struct, frozen=True):
+class DrawnTree(Struct, frozen=True):
     """The rows of a tree from top to bottom."""
 
     name: str
@@ -60,7 +60,7 @@ class Tree(Struct, frozen=True):
     note: str
 
 
-def tree(robot: Mechanism, wanted: Wanted) -> Tree:
+def tree(robot: Mechanism, wanted: Wanted) -> DrawnTree:
     """The chosen part of a robot as rows; hyperedges come first where there is no body."""
     wanted = Wanted(wanted.depth, wanted.only or ("joint", *OVER_THE_TREE), wanted.fold)
     chosen = select(robot, wanted)
@@ -92,7 +92,7 @@ class _Rows:
         self.row: dict[Id, float] = {}
         self.lanes = _lanes(robot, bodies)
 
-    def tree(self) -> Tree:
+    def tree(self) -> DrawnTree:
         below: dict[int, list[Id]] = {}
         for key, members in self.members.items():
             below.setdefault(max(members, default=len(self.bodies) - 1), []).append(key)
@@ -105,7 +105,7 @@ class _Rows:
                 self.row[key] = row
                 row += 1 + LINE * (len(self.text[key]) - 1)
         over = self._over()
-        return Tree(self.robot.name, tuple(map(self._body, self.bodies)), over, not_drawn(self.chosen))
+        return DrawnTree(self.robot.name, tuple(map(self._body, self.bodies)), over, not_drawn(self.chosen))
 
     def _body(self, key: Id) -> BodyRow:
         view = self.robot.parent_joint.get(key)

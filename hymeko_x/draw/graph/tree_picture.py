@@ -11,7 +11,7 @@ from hymeko_x.draw.graph.tree import LINE, joint_text
 from hymeko_x.ir.mechanism import WORLD
 
 if TYPE_CHECKING:
-    from hymeko_x.draw.graph.tree import BodyRow, OverRow, Tree
+    from hymeko_x.draw.graph.tree import BodyRow, DrawnTree, OverRow
 
 _PITCH = 30.0
 """The distance of rows."""
@@ -24,13 +24,13 @@ _TOP = MARGIN + 48.0
 _SYMBOL = 20.0
 
 
-def tree_picture(shape: Tree) -> str:
+def tree_picture(shape: DrawnTree) -> str:
     """The SVG of a kinematic tree."""
     return _Picture(shape).drawn()
 
 
 class _Picture:
-    def __init__(self, shape: Tree) -> None:
+    def __init__(self, shape: DrawnTree) -> None:
         self.shape = shape
         self.at = {body.row: body for body in shape.bodies}
         joints = [joint_text(body.joint) for body in shape.bodies if body.joint]

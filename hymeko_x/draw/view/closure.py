@@ -24,7 +24,7 @@ _LONGEST = 0.3
 """No coordinate moves by more than this in one step, in rad or m."""
 
 
-class Closure:
+class LoopCloser:
     """The loops of a model, and the dofs between their bodies and the base that can close them."""
 
     def __init__(self, model: KinematicModel, kinematics: Kinematics) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from hymeko_x.draw.view.closure import Closure
+from hymeko_x.draw.view.closure import LoopCloser
 from hymeko_x.verify.checks.pair import carried_over, shifts_between
 from hymeko_x.verify.kinematics import bounds, draw, follow, prepare
 from hymeko_x.verify.matching import match
@@ -27,13 +27,13 @@ class Slider(NamedTuple):
     unit: str
 
 
-class Motion:
+class PosedRobot:
     """A robot in a configuration, at first the one in which its file places the bodies."""
 
     def __init__(self, model: KinematicModel) -> None:
         self.model = model
         self._kinematics = prepare(model)
-        self._closure = Closure(model, self._kinematics)
+        self._closure = LoopCloser(model, self._kinematics)
         self.rest: Array = draw(model, 0, np.random.default_rng(0))[0]
         self.q: Array = self.rest.copy()
 
@@ -68,8 +68,8 @@ class Motion:
 class Partner:
     """A second robot that goes where the first one goes."""
 
-    def __init__(self, first: Motion, model: KinematicModel) -> None:
-        self.motion = Motion(model)
+    def __init__(self, first: PosedRobot, model: KinematicModel) -> None:
+        self.motion = PosedRobot(model)
         self._first = first
         self.match = match(first.model, model)
         self._shifts = shifts_between(first.model, model, self.match)

@@ -50,14 +50,14 @@ _DROP = """<style onload="
 """Gives a file that is dropped on the page to the upload button. A script element would not run in text that is inserted later."""
 
 
-class Body(NamedTuple):
+class BodyNodes(NamedTuple):
     """The nodes of a body: the frame that is moved, and by layer what is fixed to it."""
 
     frame: Handle
     layers: dict[str, list[Handle]]
 
 
-class Page:
+class ViewPage:
     """One page, which every browser that opens it shares.
 
     ``on_slider(number, value)`` is called when a user moves a slider, ``on_layout()`` when the two robots go to other places,
@@ -72,7 +72,7 @@ class Page:
         on_file: Callable[[str, bytes], None],
     ) -> None:
         self.server = server
-        self.bodies: list[list[Body]] = []
+        self.bodies: list[list[BodyNodes]] = []
         self.sliders: list[Handle] = []
         self.buttons: list[Handle] = []
         self._on_slider = on_slider
@@ -207,7 +207,7 @@ class Page:
 
     # ---- nodes ---------------------------------------------------------------------------------------------------------
 
-    def _robot(self, number: int, scene: Scene) -> list[Body]:
+    def _robot(self, number: int, scene: Scene) -> list[BodyNodes]:
         bodies = [self._body(number, index, scene.model) for index in range(len(scene.model.bodies))]
         for count, item in enumerate(scene.items):
             layer = "collision" if item.is_collision else "visual"
@@ -216,7 +216,7 @@ class Page:
                 bodies[item.body].layers[layer].append(handle)
         return bodies
 
-    def _body(self, number: int, index: int, model: KinematicModel) -> Body:
+    def _body(self, number: int, index: int, model: KinematicModel) -> BodyNodes:
         """The frame of a body with its axes, its ellipsoid and its name."""
         path, size, scene = f"/robot{number}/body{index}", 0.12 * self._reach, self.server.scene
         frame = scene.add_frame(path, show_axes=False, axes_length=size, axes_radius=0.03 * size)
@@ -236,30 +236,30 @@ class Page:
         if index:
             words = f"{shown(model.bodies[index].name or model.body_label(index))}  {model.bodies[index].mass:.4g} kg"
             layers["names"].append(scene.add_label(f"{path}/name", words))
-        return Body(frame, layers)
+        return BodyNodes(frame, layers)
 
     def _shape(self, path: str, item: Item) -> Handle | None:
         """The node of a shape; None where it is not drawn."""
         red, green, blue, alpha = item.rgba
         colour = (round(_WHITE * red), round(_WHITE * green), round(_WHITE * blue))
-        look = {"color": colour, "opacity": alpha if alpha < 1.0 else None, "position": item.pose.xyz, "wxyz": item.pose.quat}
+        appearance = {"color": colour, "opacity": alpha if alpha < 1.0 else None, "position": item.pose.xyz, "wxyz": item.pose.quat}
         scene: Any = self.server.scene
         match item.geometry:
             case Box(size):
-                return scene.add_box(path, dimensions=size, **look)
+                return scene.add_box(path, dimensions=size, **appearance)
             case Sphere(radius):
-                return scene.add_icosphere(path, radius=radius, **look)
+                return scene.add_icosphere(path, radius=radius, **appearance)
             case Cylinder(radius, length):
-                return scene.add_cylinder(path, radius=radius, height=length, **look)
+                return scene.add_cylinder(path, radius=radius, height=length, **appearance)
             case Capsule(radius, length):
-                return scene.add_mesh_simple(path, *_capsule(radius, length), **look)
+                return scene.add_mesh_simple(path, *_capsule(radius, length), **appearance)
             case Ellipsoid(radii):
-                return scene.add_icosphere(path, radius=1.0, scale=radii, **look)
+                return scene.add_icosphere(path, radius=1.0, scale=radii, **appearance)
             case Plane():
                 return None
         if item.points is None or item.faces is None:
             return None
-        return scene.add_mesh_simple(path, item.points.astype(np.float32), item.faces.astype(np.uint32), side="double", **look)
+        return scene.add_mesh_simple(path, item.points.astype(np.float32), item.faces.astype(np.uint32), side="double", **appearance)
 
     def _ground(self) -> None:
         square = 10.0 ** round(np.log10(self._reach / 4.0))

@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hymeko_x.assets.companions import companion_reader
 from hymeko_x.assets.shelf import read_file
-from hymeko_x.draw.view.motion import Motion
+from hymeko_x.draw.view.motion import PosedRobot
 from hymeko_x.ir.geometry import Box, Capsule, Cylinder, Ellipsoid, MeshShape, NoShape, Sphere
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Material, Mesh, Role
@@ -81,7 +81,7 @@ def scene_of(robot: Robot) -> Scene:
 
 def _reach(model: KinematicModel, items: Sequence[Item]) -> float:
     """See :class:`Scene`. Shapes of the world, such as a floor, are no part of the robot."""
-    poses = Motion(model).poses()
+    poses = PosedRobot(model).poses()
     shapes = [item for item in items if item.body != GROUND]
     centres = [poses[item.body][:3] @ (*item.pose.xyz, 1.0) for item in shapes]
     places = np.array([*poses[1:, :3, 3], *centres]).reshape(-1, 3)

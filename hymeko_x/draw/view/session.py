@@ -14,10 +14,10 @@ from hymeko_x.diagnostics import Refusal
 from hymeko_x.draw.comparison.facts import lines_of, losses_of
 from hymeko_x.draw.comparison.rows import answer, gap_line
 from hymeko_x.draw.view.findings import spots_of
-from hymeko_x.draw.view.motion import Motion, Partner
-from hymeko_x.draw.view.page import Page
+from hymeko_x.draw.view.motion import Partner, PosedRobot
+from hymeko_x.draw.view.page import ViewPage
 from hymeko_x.draw.view.scene import scene_of
-from hymeko_x.draw.view.watch import Watch
+from hymeko_x.draw.view.watch import FileWatch
 from hymeko_x.robot import Robot
 from hymeko_x.verify.model import KinematicModel, world_body
 
@@ -38,7 +38,7 @@ PERIOD = 0.5
 class Session:
     """One or two robots on a page.
 
-    ``read`` reads the robot in a file, ``judge`` gives the verdict about two files. A file that a browser sends is put into ``folder``.
+    ``read`` reads the robot in a file, ``verify`` gives the verdict about two files. A file that a browser sends is put into ``folder``.
     Raises: Refusal when a file cannot be read at first; later the page shows why.
     """
 
@@ -47,18 +47,18 @@ class Session:
         server: viser.ViserServer,
         paths: Sequence[str],
         read: Callable[[str], Side],
-        judge: Callable[[str, str], Verdict],
+        verify: Callable[[str, str], Verdict],
         folder: str | Path,
     ) -> None:
-        self._paths, self._read, self._judge = list(paths), read, judge
+        self._paths, self._read, self._verify = list(paths), read, verify
         self._folder = Path(folder)
         self._lock = threading.RLock()
         self._stopped = threading.Event()
         self._round = 0
-        self.page = Page(server, self._move, self._place, self.compare_with)
+        self.page = ViewPage(server, self._move, self._place, self.compare_with)
         self.sides: Sequence[Side] = ()
         self.scenes: Sequence[Scene] = ()
-        self.motion = Motion(KinematicModel("", "", "", (world_body(),)))
+        self.motion = PosedRobot(KinematicModel("", "", "", (world_body(),)))
         self.partner: Partner | None = None
         self._show(self._paths)
 
@@ -81,8 +81,8 @@ class Session:
         with self._lock:
             before = {slider.label: self._value(slider.dof) for slider in self.motion.sliders}
             self.sides, self.scenes = sides, scenes
-            self._watch = Watch(_files(sides))
-            self.motion = Motion(scenes[0].model)
+            self._watch = FileWatch(_files(sides))
+            self.motion = PosedRobot(scenes[0].model)
             self.partner = Partner(self.motion, scenes[1].model) if len(scenes) > 1 else None
             for slider in self.motion.sliders:
                 if slider.lower <= before.get(slider.label, np.nan) <= slider.upper:
@@ -103,7 +103,7 @@ class Session:
         if self.partner is not None:
             lost = lines_of(losses_of(*self.sides))
             try:
-                verdict = self._judge(self._paths[0], self._paths[1])
+                verdict = self._verify(self._paths[0], self._paths[1])
             except Refusal as refusal:
                 words = f"not verified: {refusal.diagnostic.message}"
             else:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     State = tuple[int, int] | None
 
 
-class Watch:
+class FileWatch:
     """The state of files when they were last looked at. A file that is not there has a state, too."""
 
     def __init__(self, paths: Iterable[str]) -> None:

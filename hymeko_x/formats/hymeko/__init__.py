@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
 
 
-class Word(NamedTuple):
+class FieldWord(NamedTuple):
     """A field of the language: its word, the part's attribute, the form of its value, and its dimension for units.
 
     Forms: number, text, flag, numbers (any count), vec3, rgba (three numbers or four), integers (any count), pixels (two).
@@ -34,61 +34,61 @@ class PartWords(NamedTuple):
     """A part and its words, in the order in which they are printed. ``open``: other fields are its parameters."""
 
     part: type
-    words: tuple[Word, ...]
+    words: tuple[FieldWord, ...]
     open: bool = False
 
 
-def _number(word: str, dimension: str = "") -> Word:
-    return Word(word, word, "number", dimension)
+def _number(word: str, dimension: str = "") -> FieldWord:
+    return FieldWord(word, word, "number", dimension)
 
 
-def _numbers(words: str) -> tuple[Word, ...]:
+def _numbers(words: str) -> tuple[FieldWord, ...]:
     return tuple(map(_number, words.split()))
 
 
-def _forces(words: str) -> tuple[Word, ...]:
+def _forces(words: str) -> tuple[FieldWord, ...]:
     """Numbers whose dimension has the name of the word (:mod:`hymeko_x.formats.hymeko.units`)."""
     return tuple(_number(word, word) for word in words.split())
 
 
-def _motions(words: str) -> tuple[Word, ...]:
+def _motions(words: str) -> tuple[FieldWord, ...]:
     """Numbers along a dof: dimension ``motion`` is an angle for dofs that turn and a length for dofs that slide."""
     return tuple(_number(word, "motion") for word in words.split())
 
 
-_TYPE = Word("type", "kind", "text")
-_NAME = Word("name", "name", "text")
-_FILE = Word("file", "uri", "text")
-_RGBA = Word("rgba", "rgba", "rgba")
-_SCALE = Word("scale", "scale", "vec3")
-_ACTIVE = Word("active", "active", "flag")
-_FACES = Word("faces", "faces", "integers")
+_TYPE = FieldWord("type", "kind", "text")
+_NAME = FieldWord("name", "name", "text")
+_FILE = FieldWord("file", "uri", "text")
+_RGBA = FieldWord("rgba", "rgba", "rgba")
+_SCALE = FieldWord("scale", "scale", "vec3")
+_ACTIVE = FieldWord("active", "active", "flag")
+_FACES = FieldWord("faces", "faces", "integers")
 _MASS = _number("mass", "mass")
-_LAW = Word("law", "law", "text")
-_DOMAIN = Word("domain", "domain", "text")
-_POINTS = (Word("vertices", "vertices", "numbers", "length"), _FACES)
-_TEXTURING = (Word("texcoords", "texcoords", "numbers"), Word("texfaces", "texfaces", "integers"))
-_SHADING = (Word("normals", "normals", "numbers"), Word("normalfaces", "normalfaces", "integers"))
+_LAW = FieldWord("law", "law", "text")
+_DOMAIN = FieldWord("domain", "domain", "text")
+_POINTS = (FieldWord("vertices", "vertices", "numbers", "length"), _FACES)
+_TEXTURING = (FieldWord("texcoords", "texcoords", "numbers"), FieldWord("texfaces", "texfaces", "integers"))
+_SHADING = (FieldWord("normals", "normals", "numbers"), FieldWord("normalfaces", "normalfaces", "integers"))
 _SURFACE = _numbers("specular shininess reflectance emission metallic roughness")
 
 PARTS: Mapping[str, PartWords] = MappingProxyType(
     {
-        "frame": PartWords(parts.Frame, (Word("size", "size", "numbers", "length"),)),
+        "frame": PartWords(parts.Frame, (FieldWord("size", "size", "numbers", "length"),)),
         "material": PartWords(parts.Material, (_NAME, _RGBA, *_SURFACE)),
         "texture": PartWords(parts.Texture, (_FILE, _NAME)),
         "mesh": PartWords(parts.Mesh, (_FILE, _SCALE, _NAME, *_POINTS, *_TEXTURING, *_SHADING)),
         "actuator": PartWords(parts.Actuator, (_TYPE,), open=True),
         "sensor": PartWords(parts.Sensor, (_TYPE, _number("rate")), open=True),
-        "camera": PartWords(parts.Camera, (_number("fovy", "angle"), Word("resolution", "resolution", "pixels")), open=True),
-        "light": PartWords(parts.Light, (_TYPE, Word("diffuse", "diffuse", "vec3")), open=True),
-        "pose": PartWords(parts.PoseSet, (Word("group", "group", "text"), _number("time", "time")), open=True),
+        "camera": PartWords(parts.Camera, (_number("fovy", "angle"), FieldWord("resolution", "resolution", "pixels")), open=True),
+        "light": PartWords(parts.Light, (_TYPE, FieldWord("diffuse", "diffuse", "vec3")), open=True),
+        "pose": PartWords(parts.PoseSet, (FieldWord("group", "group", "text"), _number("time", "time")), open=True),
         "spring": PartWords(lumped.Spring, (*_numbers("stiffness rest"), _LAW, _DOMAIN)),
         "damper": PartWords(lumped.Damper, (*_numbers("damping"), _LAW, _DOMAIN)),
         "mass": PartWords(lumped.Mass, (_MASS, _DOMAIN)),
         "port": PartWords(lumped.Port, (_TYPE, _number("value"), _DOMAIN), open=True),
         "datum": PartWords(parts.Datum, (), open=True),
         "mount": PartWords(parts.Mount, ()),
-        "layer": PartWords(parts.Layer, (Word("use", "use", "text"),)),
+        "layer": PartWords(parts.Layer, (FieldWord("use", "use", "text"),)),
         "subset": PartWords(parts.Subset, (_FACES,)),
         "coupling": PartWords(parts.Coupling, (_ACTIVE,)),
         "loop": PartWords(parts.Loop, (_TYPE, _ACTIVE), open=True),
@@ -170,14 +170,14 @@ DOF_WORDS = (
     _number("spring_ref", "motion"),
     *_forces("armature"),
     _number("ref", "motion"),
-    Word("anchor", "anchor", "vec3", "length"),
+    FieldWord("anchor", "anchor", "vec3", "length"),
     _number("pitch", "length"),
-    Word("dof_name", "name", "text"),
+    FieldWord("dof_name", "name", "text"),
 )
 SAFETY_WORDS = (*_numbers("k_velocity k_position"), *_motions("soft_lower soft_upper"))
 CALIBRATION_WORDS = _motions("rising falling reference")
 
-SHAPE_WORDS = (_NAME, _RGBA, _MASS, *_forces("density"), Word("friction", "friction", "numbers"))
+SHAPE_WORDS = (_NAME, _RGBA, _MASS, *_forces("density"), FieldWord("friction", "friction", "numbers"))
 
 SHAPE_ROLES: Mapping[parts.Role, str] = MappingProxyType(
     {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", parts.Role.BOTH: "shape"}

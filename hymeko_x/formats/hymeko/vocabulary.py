@@ -18,7 +18,7 @@ from hymeko_x.formats.hymeko.units import BASE_UNITS, unit_exponents, unit_facto
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.formats.hymeko import Word
+    from hymeko_x.formats.hymeko import FieldWord
 
 _SI = ("m", "kg", "s", "rad")
 _FORMS = {"vec3": "[x y z]", "rgba": "[r g b] or [r g b a]", "flag": "true or false", "pixels": "[width height]"}
@@ -73,10 +73,10 @@ def si_of(unit: str) -> tuple[float, str] | None:
     return factor, "*".join(parts)
 
 
-def _described(words: tuple[Word, ...]) -> dict[str, str]:
+def _described(words: tuple[FieldWord, ...]) -> dict[str, str]:
     return {word.word: _description(word) for word in words}
 
 
-def _description(word: Word) -> str:
+def _description(word: FieldWord) -> str:
     dimension = {"": "", "motion": ", an angle or a length"}.get(word.dimension, f", dimension {word.dimension}")
     return f"{_FORMS.get(word.form, word.form)}{dimension}"

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 NAME = "mjcf"
 
 RESIDUE = "hymeko-x residue"
-"""How the names of the texts in <custom> begin that carry a residue, which means nothing to MuJoCo."""
+"""How the names of the texts in <custom> begin that contain a residue, which means nothing to MuJoCo."""
 
 DOFS: Mapping[DofKind, str] = MappingProxyType({DofKind.HINGE: "hinge", DofKind.SLIDE: "slide", DofKind.BALL: "ball", DofKind.FREE: "free"})
 """The joint type of each kind of dof; a screw has none."""

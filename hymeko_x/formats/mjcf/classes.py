@@ -17,7 +17,7 @@ from hymeko_x.formats.mjcf import MAIN
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from hymeko_x.formats.mjcf.tree import Element
+    from hymeko_x.xml.tree import XmlNode
 
 Attributes = dict[str, str]
 
@@ -72,15 +72,15 @@ _NOTHING: Mapping[str, str] = MappingProxyType({})
 class Classes:
     """The default classes of a file, by name, each with all that it inherits."""
 
-    def __init__(self, sections: Iterable[Element] = ()) -> None:
+    def __init__(self, sections: Iterable[XmlNode] = ()) -> None:
         self._classes: dict[str, dict[str, Attributes]] = {MAIN: {}}
         self._given: dict[tuple[str, str], Mapping[str, str]] = {}
         for section in sections:
             self._add(section)
 
-    def _add(self, section: Element) -> None:
+    def _add(self, section: XmlNode) -> None:
         """One <default> at top level with all inside it."""
-        stack: list[tuple[Element, str | None]] = [(section, None)]
+        stack: list[tuple[XmlNode, str | None]] = [(section, None)]
         while stack:
             element, parent = stack.pop()
             name = element.attributes.get("class")
@@ -122,7 +122,7 @@ class Classes:
         return found.get(FAMILIES.get(tag, tag.partition("@")[0]), _NOTHING)
 
 
-def _with_own(inherited: dict[str, Attributes], element: Element) -> dict[str, Attributes]:
+def _with_own(inherited: dict[str, Attributes], element: XmlNode) -> dict[str, Attributes]:
     merged = dict(inherited)
     for child in element.children:
         if child.tag in ACTUATORS:
@@ -132,7 +132,7 @@ def _with_own(inherited: dict[str, Attributes], element: Element) -> dict[str, A
     return merged
 
 
-def _add_actuator(merged: dict[str, Attributes], child: Element) -> None:
+def _add_actuator(merged: dict[str, Attributes], child: XmlNode) -> None:
     shared = {name: text for name, text in child.attributes.items() if name in _SHARED}
     own = {name: text for name, text in child.attributes.items() if name not in _SHARED}
     merged[_ANY_ACTUATOR] = dict(merge(merged.get(_ANY_ACTUATOR, _NOTHING), shared))

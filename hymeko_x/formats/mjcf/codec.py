@@ -1,6 +1,6 @@
 """What the attributes of MJCF elements mean: one table for reader and writer.
 
-A :class:`Group` turns the attributes that belong together into one value of the IR and back; ``seen`` is what
+A :class:`AttributeGroup` turns the attributes that belong together into one value of the IR and back; ``seen`` is what
 MuJoCo makes of them, so that two texts of the same meaning are distinguished from two of almost the same.
 """
 
@@ -56,7 +56,7 @@ class Settings(Struct, frozen=True):
     plain_turns: bool = False
 
 
-class Group(Struct, frozen=True, eq=False):
+class AttributeGroup(Struct, frozen=True, eq=False):
     """Attributes that make one value. Each is equal to itself alone.
 
     ``needs``: attributes of other groups on which their meaning depends. ``exact``: what is written always means the same.
@@ -237,8 +237,8 @@ def same_pose(a: object, b: object) -> bool:
     return a == b and isinstance(a, Pose) and isinstance(b, Pose) and a.written == b.written
 
 
-POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose, same=same_pose)
-SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose_or_ends, seen_pose, same=same_pose)
+POSE = AttributeGroup("pose", POSE_NAMES, read_pose, write_pose, seen_pose, same=same_pose)
+SITE_POSE = AttributeGroup("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose_or_ends, seen_pose, same=same_pose)
 
 
 _AT_HOME: Mapping[str, str] = MappingProxyType(
@@ -247,7 +247,7 @@ _AT_HOME: Mapping[str, str] = MappingProxyType(
 """The attributes of a pose that is none, which are written where a class gives another one."""
 
 
-def undone(group: Group, base: Mapping[str, str], texts: Mapping[str, str]) -> dict[str, str]:
+def undone(group: AttributeGroup, base: Mapping[str, str], texts: Mapping[str, str]) -> dict[str, str]:
     """What undoes the position or the orientation of a class in an element that has none."""
     is_turned = any(name in TURNS for name in texts)
     lacking = [name for name in group.names if name in base and name in _AT_HOME and name not in texts]
@@ -257,7 +257,7 @@ def undone(group: Group, base: Mapping[str, str], texts: Mapping[str, str]) -> d
 # ---- plain groups ------------------------------------------------------------------------------------------------------------
 
 
-def real(name: str, default: float | None = None) -> Group:
+def real(name: str, default: float | None = None) -> AttributeGroup:
     """One number."""
 
     def read(attributes: Mapping[str, str], settings: Settings) -> float | None:
@@ -267,10 +267,10 @@ def real(name: str, default: float | None = None) -> Group:
     def write(value: float | None, settings: Settings) -> dict[str, str]:
         return {} if value is None else {name: number_text(value)}
 
-    return Group(name, (name,), read, write, seen_numbers(name, default), exact=True)
+    return AttributeGroup(name, (name,), read, write, seen_numbers(name, default), exact=True)
 
 
-def first_real(name: str) -> Group:
+def first_real(name: str) -> AttributeGroup:
     """One number, of which some formats want more (coefficients of a polynomial); only the first one is typed, 0 by default."""
 
     def read(attributes: Mapping[str, str], settings: Settings) -> float:
@@ -280,10 +280,10 @@ def first_real(name: str) -> Group:
     def write(value: float, settings: Settings) -> dict[str, str]:
         return {name: number_text(value)}
 
-    return Group(name, (name,), read, write, seen_numbers(name, 0.0))
+    return AttributeGroup(name, (name,), read, write, seen_numbers(name, 0.0))
 
 
-def reals(name: str, least: int, most: int, engine: tuple[float, ...] = ()) -> Group:
+def reals(name: str, least: int, most: int, engine: tuple[float, ...] = ()) -> AttributeGroup:
     """Some numbers; empty when there are none. ``engine``: what MuJoCo takes then, written where a class would give others."""
 
     def read(attributes: Mapping[str, str], settings: Settings) -> tuple[float, ...]:
@@ -292,12 +292,12 @@ def reals(name: str, least: int, most: int, engine: tuple[float, ...] = ()) -> G
     def write(value: tuple[float, ...], settings: Settings) -> dict[str, str]:
         return {name: numbers_text(value or engine)} if value or engine else {}
 
-    return Group(name, (name,), read, write, seen_numbers(name, None), exact=True)
+    return AttributeGroup(name, (name,), read, write, seen_numbers(name, None), exact=True)
 
 
-def text(name: str) -> Group:
+def text(name: str) -> AttributeGroup:
     """A text, such as a reference."""
-    return Group(
+    return AttributeGroup(
         name,
         (name,),
         lambda attributes, settings: attributes.get(name),

@@ -10,7 +10,7 @@ from hymeko_x.formats.mjcf.codec import BadAttribute
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.formats.mjcf.codec import Group, Settings
+    from hymeko_x.formats.mjcf.codec import AttributeGroup, Settings
 
 REFUSED = object()
 """In place of a value that MuJoCo refuses."""
@@ -23,11 +23,11 @@ class InheritedValues:
     """
 
     def __init__(self) -> None:
-        self._known: dict[tuple[int, int], tuple[tuple[Group, Any], ...]] = {}
-        self._apart: dict[tuple[int, int, tuple[str, ...]], tuple[dict[str, Any], list[Group]]] = {}
-        self._groups: list[tuple[Group, ...]] = []
+        self._known: dict[tuple[int, int], tuple[tuple[AttributeGroup, Any], ...]] = {}
+        self._apart: dict[tuple[int, int, tuple[str, ...]], tuple[dict[str, Any], list[AttributeGroup]]] = {}
+        self._groups: list[tuple[AttributeGroup, ...]] = []
 
-    def of(self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
+    def of(self, groups: tuple[AttributeGroup, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[AttributeGroup, Any], ...]:
         """Each group with its value for the attributes ``base`` that the class gives; REFUSED where MuJoCo refuses them."""
         place = id(groups), id(base) if base else 0
         found = self._known.get(place)
@@ -37,8 +37,8 @@ class InheritedValues:
         return found
 
     def apart(
-        self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings, names: tuple[str, ...]
-    ) -> tuple[Mapping[str, Any], list[Group]]:
+        self, groups: tuple[AttributeGroup, ...], base: Mapping[str, str], settings: Settings, names: tuple[str, ...]
+    ) -> tuple[Mapping[str, Any], list[AttributeGroup]]:
         """The values that an element with attributes of these names inherits, by the keys of their groups; and the groups that it reads."""
         form = id(groups), id(base) if base else 0, names
         found = self._apart.get(form)
@@ -54,16 +54,16 @@ class InheritedValues:
 
 
 @lru_cache(256)
-def _own_defaults(groups: tuple[Group, ...], settings: Settings) -> tuple[tuple[Group, Any], ...]:
+def _own_defaults(groups: tuple[AttributeGroup, ...], settings: Settings) -> tuple[tuple[AttributeGroup, Any], ...]:
     """The values that the groups have where no class gives any: MuJoCo's own."""
     return _values_of(groups, {}, settings)
 
 
-def _values_of(groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
+def _values_of(groups: tuple[AttributeGroup, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[AttributeGroup, Any], ...]:
     return tuple([(group, _value_of(group, base, settings)) for group in groups])
 
 
-def _value_of(group: Group, base: Mapping[str, str], settings: Settings) -> Any:
+def _value_of(group: AttributeGroup, base: Mapping[str, str], settings: Settings) -> Any:
     try:
         return group.read(base, settings)
     except BadAttribute:

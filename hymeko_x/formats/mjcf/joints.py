@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.formats.mjcf.codec import (
+    AttributeGroup,
     BadAttribute,
-    Group,
     Settings,
     angle_text,
     angles_text,
@@ -62,7 +62,7 @@ def _write_axis(value: tuple[Vec3, Written | None], settings: Settings) -> dict[
     return {"axis": numbers_text(written.numbers if written and written.kind == "axis" else axis)}
 
 
-def _motion(name: str) -> Group:
+def _motion(name: str) -> AttributeGroup:
     """A coordinate of a joint: an angle in the unit of the file, or a length."""
 
     def in_degrees(attributes: Mapping[str, str], settings: Settings) -> bool:
@@ -81,7 +81,7 @@ def _motion(name: str) -> Group:
     def read_both(attributes: Mapping[str, str], settings: Settings) -> tuple[float, DofKind]:
         return read(attributes, settings), read_kind(attributes, settings)
 
-    return Group(name, (name,), read_both, write, seen_numbers(name, 0.0), _TYPE)
+    return AttributeGroup(name, (name,), read_both, write, seen_numbers(name, 0.0), _TYPE)
 
 
 Span = tuple[float, float] | None
@@ -102,7 +102,7 @@ def _is_limited(attributes: Mapping[str, str], settings: Settings, span: str, fl
     return ordered and (word == "true" or (word == "auto" and settings.autolimits))
 
 
-def span(name: str, flag: str, *, angular: bool = False) -> Group:
+def span(name: str, flag: str, *, angular: bool = False) -> AttributeGroup:
     """An interval with its flag; None where it does not hold."""
 
     def read(attributes: Mapping[str, str], settings: Settings) -> tuple[Span, DofKind]:
@@ -126,17 +126,17 @@ def span(name: str, flag: str, *, angular: bool = False) -> Group:
         found, word = read_numbers(attributes.get(name, "0 0")) or (0.0, 0.0), attributes.get(flag, "auto")
         return found, word == "true" or (word == "auto" and settings.autolimits and found[0] < found[-1])
 
-    return Group(name, (name, flag), read, write, seen, _TYPE if angular else frozenset())
+    return AttributeGroup(name, (name, flag), read, write, seen, _TYPE if angular else frozenset())
 
 
-KIND = Group(
+KIND = AttributeGroup(
     "type",
     ("type",),
     read_kind,
     lambda value, settings: {"type": _DOF_WORDS[value]},
     lambda attributes, settings: attributes.get("type", "hinge"),
 )
-AXIS = Group(
+AXIS = AttributeGroup(
     "axis",
     ("axis",),
     _read_axis,
@@ -144,7 +144,7 @@ AXIS = Group(
     lambda attributes, settings: read_numbers(attributes.get("axis", "0 0 1")),
     _TYPE,
 )
-ANCHOR = Group(
+ANCHOR = AttributeGroup(
     "pos",
     ("pos",),
     lambda attributes, settings: vector_of(attributes, "pos", ZERO),

@@ -22,23 +22,23 @@ def frame_of(prefix: str = "") -> Notation[str]:
     return word(f"{prefix}frame")
 
 
-class Frame(NamedTuple):
+class MjcfFrame(NamedTuple):
     """A <frame> in a body: the number of the one around it (0 = none), and its attributes."""
 
     outer: str
     attributes: dict[str, str]
 
 
-def _frame_text(frame: Frame) -> str:
+def _frame_text(frame: MjcfFrame) -> str:
     return " ".join([frame.outer, *(f'{name}="{value}"' for name, value in frame.attributes.items())])
 
 
-def _frame(text: str) -> Frame:
+def _frame(text: str) -> MjcfFrame:
     outer, _, rest = text.partition(" ")
-    return Frame(outer, parse_text(f"<frame {rest}/>").attributes)
+    return MjcfFrame(outer, parse_text(f"<frame {rest}/>").attributes)
 
 
-def frame(number: int) -> Notation[Frame]:
+def frame(number: int) -> Notation[MjcfFrame]:
     """The <frame> of this number in a body, counted from 1."""
     return Notation(f"frame{number}", _frame_text, _frame)
 

@@ -13,8 +13,8 @@ from hymeko_x.formats.mjcf.codec import (
     POSE,
     POSE_NAMES,
     SITE_POSE,
+    AttributeGroup,
     BadAttribute,
-    Group,
     Settings,
     degrees_text,
     numbers_of,
@@ -73,7 +73,7 @@ GRID = 0.05
 _MARK = 0.005
 
 
-class Place(Struct, frozen=True):
+class GeomPlace(Struct, frozen=True):
     """What a geom is and where: its geometry, its pose, and the distance of a plane's grid lines in m."""
 
     geometry: Geometry
@@ -91,16 +91,16 @@ def _check_ends(attributes: Mapping[str, str], word: str) -> None:
         raise BadAttribute("pos", "nothing beside fromto")
 
 
-def _read_place(attributes: Mapping[str, str], settings: Settings) -> Place:
+def _read_place(attributes: Mapping[str, str], settings: Settings) -> GeomPlace:
     pose = read_pose(attributes, settings)
     word = attributes.get("type", "sphere")
     _check_ends(attributes, word)
     if word == "hfield" and not attributes.get("hfield"):
         raise BadAttribute("hfield", "the name of a height field")
     if word == "mesh" and "mesh" in attributes:
-        return Place(MeshShape(), pose)
+        return GeomPlace(MeshShape(), pose)
     if word not in _SIZES or "mesh" in attributes:
-        return Place(NoShape(), pose)
+        return GeomPlace(NoShape(), pose)
     size = list(numbers_of(attributes, "size", 1, 3) or ())
     length = None if pose.written is None or pose.written.kind != "fromto" else length_of(pose.written)
     if length is not None:
@@ -109,7 +109,7 @@ def _read_place(attributes: Mapping[str, str], settings: Settings) -> Place:
         raise BadAttribute("size", f"{_SIZES[word]} number{'s' if _SIZES[word] > 1 else ''} for a {word}")
     if any(number <= 0.0 for number in (size[2:3] if word == "plane" else size[: _SIZES[word]])):
         raise BadAttribute("size", "a distance of grid lines that is more than 0" if word == "plane" else "lengths that are more than 0")
-    return Place(_geometry(word, size, length), pose, size[2] if word == "plane" else None)
+    return GeomPlace(_geometry(word, size, length), pose, size[2] if word == "plane" else None)
 
 
 def _sizes_along(word: str, size: list[float], half: float) -> list[float]:
@@ -133,7 +133,7 @@ def _geometry(word: str, size: list[float], length: float | None) -> Geometry:
             return Plane((size[0], size[1]))
 
 
-def _write_place(value: Place, settings: Settings) -> dict[str, str]:
+def _write_place(value: GeomPlace, settings: Settings) -> dict[str, str]:
     word, size = _word_and_size(value)
     attributes = {"type": word} if word else {}
     pose = value.pose
@@ -148,7 +148,7 @@ def _write_place(value: Place, settings: Settings) -> dict[str, str]:
     return attributes | write_pose_or_ends(pose, settings)
 
 
-def _word_and_size(value: Place) -> tuple[str | None, tuple[float, ...]]:
+def _word_and_size(value: GeomPlace) -> tuple[str | None, tuple[float, ...]]:
     match value.geometry:
         case Sphere(radius):
             return "sphere", (radius,)
@@ -168,7 +168,7 @@ def _word_and_size(value: Place) -> tuple[str | None, tuple[float, ...]]:
             return None, ()
 
 
-def between_its_ends(place: Place) -> Place:
+def between_its_ends(place: GeomPlace) -> GeomPlace:
     """The geom as two points give it, where its class gives it so, which no position can undo; as it is where points cannot give it."""
     match place.geometry:
         case Capsule(_, found) | Cylinder(_, found) | Box((_, _, found)):
@@ -194,7 +194,7 @@ def _seen_place(attributes: Mapping[str, str], settings: Settings) -> Any:
     return word, size, seen_pose(attributes, settings)
 
 
-PLACE = Group(
+PLACE = AttributeGroup(
     "place",
     ("type", "size", "fromto", *POSE_NAMES),
     _read_place,
@@ -235,7 +235,7 @@ def _read_site_size(attributes: Mapping[str, str], settings: Settings) -> tuple[
 SITE = (SITE_POSE, replace(reals("size", 1, 3), read=_read_site_size, needs=frozenset(("type", "fromto"))))
 
 
-def seen_from(group: Group, frame: Pose) -> Group:
+def seen_from(group: AttributeGroup, frame: Pose) -> AttributeGroup:
     """A group of a pose, for an element that stands in a <frame>: its value is seen from the body."""
 
     def read(attributes: Mapping[str, str], settings: Settings) -> Any:
@@ -249,7 +249,7 @@ def seen_from(group: Group, frame: Pose) -> Group:
 
 def _moved(frame: Pose, value: Any) -> Any:
     """A value with a pose, seen from where the frame is."""
-    if isinstance(value, Place):
+    if isinstance(value, GeomPlace):
         return replace(value, pose=compose(frame, value.pose))
     if isinstance(value, Inertial):
         tensor = None if value.tensor is None else rotate_tensor(frame.quat, value.tensor)
@@ -257,10 +257,10 @@ def _moved(frame: Pose, value: Any) -> Any:
     return compose(frame, value)
 
 
-# ---- things with parameters ---------------------------------------------------------------------------------------------------
+# ---- elements with parameters ---------------------------------------------------------------------------------------------------
 
 
-def _degrees(name: str) -> Group:
+def _degrees(name: str) -> AttributeGroup:
     """An angle that is always in degrees."""
 
     def read(attributes: Mapping[str, str], settings: Settings) -> float | None:
@@ -270,7 +270,7 @@ def _degrees(name: str) -> Group:
     def write(value: float | None, settings: Settings) -> dict[str, str]:
         return {} if value is None else {name: degrees_text(value)}
 
-    return Group(name, (name,), read, write, seen_numbers(name, None))
+    return AttributeGroup(name, (name,), read, write, seen_numbers(name, None))
 
 
 CAMERA = (POSE, _degrees("fovy"), reals("resolution", 2, 2))
@@ -295,7 +295,7 @@ def _write_shine(value: Pose, settings: Settings) -> dict[str, str]:
     return attributes
 
 
-SHINE = Group(
+SHINE = AttributeGroup(
     "pose", ("pos", "dir"), _read_shine, _write_shine, lambda attributes, settings: plain(attributes, ("pos", "dir")), same=same_pose
 )
 
@@ -304,7 +304,7 @@ def _read_light_kind(attributes: Mapping[str, str], settings: Settings) -> str:
     return attributes.get("type") or ("directional" if attributes.get("directional") == "true" else "spot")
 
 
-LIGHT_KIND = Group(
+LIGHT_KIND = AttributeGroup(
     "kind",
     ("type", "directional"),
     _read_light_kind,
@@ -359,7 +359,7 @@ def _same_inertial(a: Inertial, b: Inertial) -> bool:
 
 
 _INERTIAL_NAMES = ("pos", "mass", "diaginertia", "fullinertia", *TURNS)
-INERTIAL = Group(
+INERTIAL = AttributeGroup(
     "inertial",
     _INERTIAL_NAMES,
     _read_inertial,
@@ -379,7 +379,7 @@ MATERIAL = (
     text("texture"),
 )
 
-SCALE = Group(
+SCALE = AttributeGroup(
     "scale",
     ("scale",),
     lambda attributes, settings: vector_of(attributes, "scale", (1.0, 1.0, 1.0)),

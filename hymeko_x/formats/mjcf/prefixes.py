@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from hymeko_x.ir.mechanism import Extra
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 _SITES = ("site", "site1", "site2", "cranksite", "refsite", "sidesite", "slidersite")
 _KINDS: Mapping[str, str] = MappingProxyType(
@@ -67,7 +67,7 @@ def renamed(extra: Extra, change: Callable[[str, str], str], *, is_of_whole: boo
     return replace(extra, text=verbatim(node)) if is_changed else extra
 
 
-def _changed(element: Node, attribute: str, change: Callable[[str, str], str]) -> str:
+def _changed(element: XmlNode, attribute: str, change: Callable[[str, str], str]) -> str:
     """The attribute with changed names; a flex names several bodies."""
     old, kind = element.attributes[attribute], _kind_of(element, attribute)
     if element.tag in _OF_SEVERAL and kind == "body":
@@ -75,7 +75,7 @@ def _changed(element: Node, attribute: str, change: Callable[[str, str], str]) -
     return change(kind, old)
 
 
-def _element(text: str) -> Node | None:
+def _element(text: str) -> XmlNode | None:
     """The element that a text is; None for a comment, and for what is no XML."""
     try:
         return parse_text(text) if text.startswith("<") else None
@@ -83,7 +83,7 @@ def _element(text: str) -> Node | None:
         return None
 
 
-def _kind_of(element: Node, attribute: str) -> str:
+def _kind_of(element: XmlNode, attribute: str) -> str:
     """The kind of the element that an attribute names."""
     if attribute in ("objname", "refname"):
         return _OBJECTS.get(element.attributes.get(f"{attribute[:3]}type", ""), "")

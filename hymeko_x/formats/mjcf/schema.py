@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _ANY = 10**9
 
 
-class Kind(Struct, frozen=True):
+class AttributeKind(Struct, frozen=True):
     """What an attribute may hold: ``least`` to ``most`` numbers (``whole`` or not), or one of ``words`` (``several``: some of them)."""
 
     least: int = 0
@@ -55,22 +55,22 @@ def schema() -> Schema:
 
 
 @lru_cache(512)
-def kinds_of(path: str) -> Mapping[str, Kind]:
+def kinds_of(path: str) -> Mapping[str, AttributeKind]:
     """The kinds of the attributes of the element of this place; those that are texts are not in it."""
     found = ((name, _kind(text)) for name, text in schema().elements.get(path, {}).items() if text != "text")
     return MappingProxyType(dict(found))
 
 
 @lru_cache(512)
-def _kind(text: str) -> Kind:
+def _kind(text: str) -> AttributeKind:
     """``a|b``: one of these words; ``*a|b``: some of them; ``3``: three numbers; ``1-3``: one to three; ``n``: any; ``int 2``: whole."""
     if "|" in text:
-        return Kind(words=frozenset(text.removeprefix("*").split("|")), several=text[0] == "*")
+        return AttributeKind(words=frozenset(text.removeprefix("*").split("|")), several=text[0] == "*")
     whole, text = text.startswith("int "), text.removeprefix("int ")
     if text == "n":
-        return Kind(0, _ANY, whole)
+        return AttributeKind(0, _ANY, whole)
     least, _, most = text.partition("-")
-    return Kind(int(least), int(most or least), whole)
+    return AttributeKind(int(least), int(most or least), whole)
 
 
 @lru_cache(512)

@@ -16,8 +16,8 @@ from hymeko_x.ir.mechanism import ROOT
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+    from hymeko_x.xml.tree import XmlNode
 
 LENGTHS = frozenset({"margin", "gap", "solimp", "solimplimit"})
 """What is measured as the constraint is; of an impedance the third number, its width."""
@@ -56,11 +56,11 @@ def resized(mechanism: Mechanism, s: float, factor: Callable[[Id, int], float]) 
     return replace(mechanism, extras=extras)
 
 
-def _is_ambiguous(root: Element) -> bool:
+def _is_ambiguous(root: XmlNode) -> bool:
     return root.tag == "default" and any(node.tag in _OF_OTHERS and LENGTHS & node.attributes.keys() for node in root.walk())
 
 
-def _whole(extra: Extra, root: Element | None, s: float) -> Extra:
+def _whole(extra: Extra, root: XmlNode | None, s: float) -> Extra:
     """An element of the whole; what has no length stays as it is written."""
     changed = False
     for node in () if root is None else root.walk():

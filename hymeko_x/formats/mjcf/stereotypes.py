@@ -17,7 +17,7 @@ from hymeko_x.formats.mjcf.words import LAW, RESOLVED
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from hymeko_x.formats.mjcf.tree import Element
+    from hymeko_x.xml.tree import XmlNode
 
 Value = float | str | tuple["Value", ...]
 Given = tuple[str, Value, str]
@@ -44,7 +44,7 @@ def fields_of_classes(texts: Iterable[str]) -> dict[str, dict[str, Fields]]:
     return {name: _given(classes, name, angle=angle, is_limited=is_limited) for name in classes.names}
 
 
-def _setting(compilers: list[Element], name: str, otherwise: str) -> str:
+def _setting(compilers: list[XmlNode], name: str, otherwise: str) -> str:
     return next((element.attributes[name] for element in reversed(compilers) if name in element.attributes), otherwise)
 
 

@@ -10,17 +10,16 @@ from hymeko_x.xml import parse as xml
 from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.printing import markup as verbatim
 from hymeko_x.xml.tree import COMMENT_NODE as COMMENT
-from hymeko_x.xml.tree import INSTRUCTION_NODE
-from hymeko_x.xml.tree import Node as Element
+from hymeko_x.xml.tree import INSTRUCTION_NODE, XmlNode
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.source import Source
 
-__all__ = ["COMMENT", "Element", "parse", "parse_text", "verbatim"]
+__all__ = ["COMMENT", "parse", "parse_text", "verbatim"]
 
 
-def parse(source: Source, report: Report) -> Element:
+def parse(source: Source, report: Report) -> XmlNode:
     """The root of an XML file; comments before it are the first children.
 
     Raises: Refusal with HX004 (not XML, or an instruction in an element, where MuJoCo stops reading), HX007 (too large), HX008 (entities).
@@ -36,7 +35,7 @@ def parse(source: Source, report: Report) -> Element:
     return document.root
 
 
-def _take_texts(root: Element) -> None:
+def _take_texts(root: XmlNode) -> None:
     """The data of texts that stand between their tags, as MuJoCo saves long ones, as the attributes that they are otherwise."""
     for section in root.children:
         for node in section.children if section.tag == "custom" else ():

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 FORMAT = "sdf"
 RESIDUE = "hymeko:residue"
-"""The element that carries a residue as the last child of the root; elements with a prefix are custom ones, which readers leave alone."""
+"""The element that contains a residue as the last child of the root; elements with a prefix are custom ones, which readers leave alone."""
 RESIDUE_NAMESPACE = "urn:hymeko-x"
 
 VERSIONS = tuple(f"1.{minor}" for minor in range(13))
@@ -71,23 +71,23 @@ def scope_around(scope: str) -> str:
 # ---- joints ------------------------------------------------------------------------------------------------------------------
 
 
-class JointType(NamedTuple):
+class SdfJointType(NamedTuple):
     """A value of ``<joint type>``: the kinds of the joint's dofs, and whether <limit> bounds the position."""
 
     dofs: tuple[DofKind, ...] = ()
     bounded: bool = True
 
 
-JOINT_TYPES: Mapping[str, JointType] = MappingProxyType(
+JOINT_TYPES: Mapping[str, SdfJointType] = MappingProxyType(
     {
-        "fixed": JointType(),
-        "revolute": JointType((DofKind.HINGE,)),
-        "continuous": JointType((DofKind.HINGE,), bounded=False),
-        "prismatic": JointType((DofKind.SLIDE,)),
-        "screw": JointType((DofKind.SCREW,)),
-        "ball": JointType((DofKind.BALL,), bounded=False),
-        "universal": JointType((DofKind.HINGE, DofKind.HINGE)),
-        "revolute2": JointType((DofKind.HINGE, DofKind.HINGE)),
+        "fixed": SdfJointType(),
+        "revolute": SdfJointType((DofKind.HINGE,)),
+        "continuous": SdfJointType((DofKind.HINGE,), bounded=False),
+        "prismatic": SdfJointType((DofKind.SLIDE,)),
+        "screw": SdfJointType((DofKind.SCREW,)),
+        "ball": SdfJointType((DofKind.BALL,), bounded=False),
+        "universal": SdfJointType((DofKind.HINGE, DofKind.HINGE)),
+        "revolute2": SdfJointType((DofKind.HINGE, DofKind.HINGE)),
     }
 )
 """``gearbox`` is none of them: it couples two joints (``gearboxes.py``). ``piston`` of old versions was never implemented."""

@@ -16,7 +16,7 @@ from hymeko_x.xml.parse import parse_text
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 TAG = "gazebo"
 
@@ -79,7 +79,7 @@ def sensor_names(texts: Iterable[str]) -> frozenset[str]:
 
 
 @lru_cache(256)
-def parsed(text: str) -> Node | None:
+def parsed(text: str) -> XmlNode | None:
     """The tree of a fragment, which is never changed: reading, writing and comparing ask for it. None for a text that is no XML."""
     try:
         return parse_text(text)

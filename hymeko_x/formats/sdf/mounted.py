@@ -18,7 +18,7 @@ from hymeko_x.xml.printing import Tag, ready
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 CAMERAS = frozenset({"camera", "depth", "depth_camera", "rgbd", "rgbd_camera", "openni_kinect"})
 """The types of sensors that see as one camera; ``depth`` and ``openni_kinect`` are those of older Gazebos."""
@@ -65,7 +65,7 @@ def _add_camera(tag: Tag, camera: Camera) -> None:
         image.add(field.name).children.append(NUMBER.write(float(value)))
 
 
-def _camera(node: Node) -> Camera:
+def _camera(node: XmlNode) -> Camera:
     """A camera with its vertical field of view, from the horizontal one and the shape of the image."""
     across = _number(node, HFOV.path, HFOV.default)
     width, height = (_number(node, field.path, field.default) for field in IMAGE)
@@ -74,9 +74,9 @@ def _camera(node: Node) -> Camera:
     return Camera(2.0 * math.atan(math.tan(across / 2.0) * height / width), (int(width), int(height)))
 
 
-def _number(node: Node, path: str, usual: float) -> float:
+def _number(node: XmlNode, path: str, usual: float) -> float:
     """The number below a node at a path of tags."""
-    found: Node | None = node
+    found: XmlNode | None = node
     for tag in path.split("/"):
         found = None if found is None else found.child(tag)
     try:
@@ -85,7 +85,7 @@ def _number(node: Node, path: str, usual: float) -> float:
         return usual
 
 
-def _pose(node: Node) -> Pose:
+def _pose(node: XmlNode) -> Pose:
     """The pose of a node in its parent; the identity without one that can be read."""
     child = node.child("pose")
     if child is None:

@@ -101,7 +101,7 @@ OLD_PITCH = Codec(_old_pitch, lambda value: number_text(-1.0 / value))
 """``thread_pitch``: rad per m, left-handed."""
 
 
-class Field(NamedTuple):
+class ValueField(NamedTuple):
     """A value below an element: where it stands, the attribute of the part that holds it, its codec and its default."""
 
     path: str
@@ -111,34 +111,34 @@ class Field(NamedTuple):
 
 
 DYNAMICS = (
-    Field("damping", "damping", NUMBER, 0.0),
-    Field("friction", "friction", NUMBER, 0.0),
-    Field("spring_reference", "spring_ref", NUMBER, 0.0),
-    Field("spring_stiffness", "stiffness", NUMBER, 0.0),
+    ValueField("damping", "damping", NUMBER, 0.0),
+    ValueField("friction", "friction", NUMBER, 0.0),
+    ValueField("spring_reference", "spring_ref", NUMBER, 0.0),
+    ValueField("spring_stiffness", "stiffness", NUMBER, 0.0),
 )
 """What <dynamics> contains."""
-STRENGTH_LIMITS = (Field("effort", "effort", STRENGTH), Field("velocity", "velocity", STRENGTH))
-LIMITS = (Field("lower", "lower", BOUND), Field("upper", "upper", BOUND), *STRENGTH_LIMITS)
+STRENGTH_LIMITS = (ValueField("effort", "effort", STRENGTH), ValueField("velocity", "velocity", STRENGTH))
+LIMITS = (ValueField("lower", "lower", BOUND), ValueField("upper", "upper", BOUND), *STRENGTH_LIMITS)
 """What <limit> contains."""
 
 TENSOR = (
-    Field("ixx", "xx", NUMBER, 1.0),
-    Field("iyy", "yy", NUMBER, 1.0),
-    Field("izz", "zz", NUMBER, 1.0),
-    Field("ixy", "xy", NUMBER, 0.0),
-    Field("ixz", "xz", NUMBER, 0.0),
-    Field("iyz", "yz", NUMBER, 0.0),
+    ValueField("ixx", "xx", NUMBER, 1.0),
+    ValueField("iyy", "yy", NUMBER, 1.0),
+    ValueField("izz", "zz", NUMBER, 1.0),
+    ValueField("ixy", "xy", NUMBER, 0.0),
+    ValueField("ixz", "xz", NUMBER, 0.0),
+    ValueField("iyz", "yz", NUMBER, 0.0),
 )
 """What <inertia> contains, in the order of the IR's tensors, with the values that libsdformat takes for missing ones."""
 
-_RADIUS, _LENGTH = Field("radius", "radius", NUMBER, 1.0), Field("length", "length", NUMBER, 1.0)
-SOLIDS: Mapping[str, tuple[type[Geometry], tuple[Field, ...]]] = MappingProxyType(
+_RADIUS, _LENGTH = ValueField("radius", "radius", NUMBER, 1.0), ValueField("length", "length", NUMBER, 1.0)
+SOLIDS: Mapping[str, tuple[type[Geometry], tuple[ValueField, ...]]] = MappingProxyType(
     {
-        "box": (Box, (Field("size", "size", VECTOR, (1.0, 1.0, 1.0)),)),
+        "box": (Box, (ValueField("size", "size", VECTOR, (1.0, 1.0, 1.0)),)),
         "sphere": (Sphere, (_RADIUS,)),
         "cylinder": (Cylinder, (_RADIUS, _LENGTH)),
         "capsule": (Capsule, (_RADIUS._replace(default=0.5), _LENGTH)),
-        "ellipsoid": (Ellipsoid, (Field("radii", "radii", VECTOR, (1.0, 1.0, 1.0)),)),
+        "ellipsoid": (Ellipsoid, (ValueField("radii", "radii", VECTOR, (1.0, 1.0, 1.0)),)),
     }
 )
 """The geometries that the IR has as well, by their elements, with the values that libsdformat takes for missing ones."""

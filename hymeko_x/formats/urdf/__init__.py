@@ -18,27 +18,27 @@ if TYPE_CHECKING:
 FORMAT = "urdf"
 
 RESIDUE = "hymeko:residue"
-"""The element that carries a residue as the last child of the root, which all other readers ignore."""
+"""The element that contains a residue as the last child of the root, which all other readers ignore."""
 RESIDUE_NAMESPACE = "urn:hymeko-x"
 
 
-class JointType(NamedTuple):
+class UrdfJointType(NamedTuple):
     """A value of ``<joint type>``: the kinds of the joint's dofs, and whether ``<limit>`` bounds the position."""
 
     dofs: tuple[DofKind, ...] = ()
     bounded: bool = False
 
 
-JOINT_TYPES: Mapping[str, JointType] = MappingProxyType(
+JOINT_TYPES: Mapping[str, UrdfJointType] = MappingProxyType(
     {
-        "fixed": JointType(),
-        "revolute": JointType((DofKind.HINGE,), bounded=True),
-        "continuous": JointType((DofKind.HINGE,)),
-        "prismatic": JointType((DofKind.SLIDE,), bounded=True),
-        "floating": JointType((DofKind.FREE,)),
-        "planar": JointType((DofKind.SLIDE, DofKind.SLIDE, DofKind.HINGE)),
-        "spherical": JointType((DofKind.BALL,)),
-        "ball": JointType((DofKind.BALL,)),
+        "fixed": UrdfJointType(),
+        "revolute": UrdfJointType((DofKind.HINGE,), bounded=True),
+        "continuous": UrdfJointType((DofKind.HINGE,)),
+        "prismatic": UrdfJointType((DofKind.SLIDE,), bounded=True),
+        "floating": UrdfJointType((DofKind.FREE,)),
+        "planar": UrdfJointType((DofKind.SLIDE, DofKind.SLIDE, DofKind.HINGE)),
+        "spherical": UrdfJointType((DofKind.BALL,)),
+        "ball": UrdfJointType((DofKind.BALL,)),
     }
 )
 """The last two are not in the standard. MuJoCo and Bullet read ``spherical``; both are written only where they were read."""

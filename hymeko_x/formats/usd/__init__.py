@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 FORMAT = "usd"
 
 RESIDUE = "hymeko:residue"
-"""The string in the custom data of the root layer that carries a residue."""
+"""The string in the custom data of the root layer that contains a residue."""
 PATH = words("usd.path")
 """The notation that keeps the path of the prim that an element was read from; several paths where it was made of several."""
 TYPE = word("usd.type")
@@ -90,7 +90,7 @@ SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 """The schemas of a prim that marks a place, MuJoCo's and Newton's."""
 
 
-class Mimic(NamedTuple):
+class MimicSchema(NamedTuple):
     """A schema by which a joint follows another one, and the names of its attributes."""
 
     schema: str
@@ -100,8 +100,10 @@ class Mimic(NamedTuple):
     enabled: str
 
 
-NEWTON_MIMIC = Mimic("NewtonMimicAPI", "newton:mimicJoint", "newton:mimicCoef0", "newton:mimicCoef1", "newton:mimicEnabled")
-NEUTRAL_MIMIC = Mimic("ExtendedPhysicsMimicAPI", *(f"ext_physics:mimic:{name}" for name in ("joint", "offset", "multiplier", "enabled")))
+NEWTON_MIMIC = MimicSchema("NewtonMimicAPI", "newton:mimicJoint", "newton:mimicCoef0", "newton:mimicCoef1", "newton:mimicEnabled")
+NEUTRAL_MIMIC = MimicSchema(
+    "ExtendedPhysicsMimicAPI", *(f"ext_physics:mimic:{name}" for name in ("joint", "offset", "multiplier", "enabled"))
+)
 """The same in the schema of no engine, incubated by REP 158. Source: ``ros-simulation/openusd-schemas``."""
 APERTURE = 15.2908
 """The default vertical aperture of a camera, in mm as is its focal length."""

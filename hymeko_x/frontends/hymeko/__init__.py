@@ -38,7 +38,7 @@ from hymeko_x.ir.provenance import take_provenance
 from hymeko_x.language.classes import with_classes
 from hymeko_x.language.comments import comments_in, without_comments
 from hymeko_x.language.errors import with_excerpt
-from hymeko_x.language.expansion import Change, Element, Expanded, Instance, Statement, expand
+from hymeko_x.language.expansion import Amendment, Expanded, ExpandedElement, Instance, Statement, expand
 from hymeko_x.language.markup import is_foreign
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
@@ -87,7 +87,7 @@ def read(source: Source, report: Report) -> Reading:
 
 
 def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[int, Imported]) -> Mechanism:
-    elements = [item for item in expanded.items if isinstance(item, Element)]
+    elements = [item for item in expanded.items if isinstance(item, ExpandedElement)]
     for element in elements:
         if _is_units(element.node):
             builder.reader.units = read_units(element.node, builder.reader)
@@ -115,14 +115,14 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[i
     return with_heritage(replace(found, places=builder.places, stored=builder.stored), tuple(instances.values()))
 
 
-def _as_graph(expanded: Expanded) -> tuple[Expanded, list[Element]]:
+def _as_graph(expanded: Expanded) -> tuple[Expanded, list[ExpandedElement]]:
     """The text of a graph and its elements, with units as a vertex like any other: the numbers of plain data have none."""
-    items = tuple(_datum(item) if isinstance(item, Element) and _is_units(item.node) else item for item in expanded.items)
-    elements = [item for item in items if isinstance(item, Element) and not _is_about_the_whole(item.node)]
+    items = tuple(_datum(item) if isinstance(item, ExpandedElement) and _is_units(item.node) else item for item in expanded.items)
+    elements = [item for item in items if isinstance(item, ExpandedElement) and not _is_about_the_whole(item.node)]
     return expanded._replace(items=items, types=("graph", *expanded.types)), elements
 
 
-def _datum(element: Element) -> Element:
+def _datum(element: ExpandedElement) -> ExpandedElement:
     """An element as a vertex of data, whatever its name and its fields mean elsewhere."""
     node = element.node._replace(name=QuotedName(element.node.name), items=(Field("kind", "datum"), *element.node.items))
     return element._replace(node=node, types=("datum",))
@@ -131,14 +131,14 @@ def _datum(element: Element) -> Element:
 def _place_instances(builder: HymekoBuilder, expanded: Expanded, instances: dict[int, Imported]) -> None:
     """Apply the changes of elements of imported robots, and put the robots where they belong."""
     within = [change for imported in instances.values() for change in changes_in(imported)]
-    for change in (*within, *(item for item in expanded.items if isinstance(item, Change))):
+    for change in (*within, *(item for item in expanded.items if isinstance(item, Amendment))):
         change_element(builder, change)
     owners = frames_on_bodies(builder) if instances else {}
     for imported in instances.values():
         place_instance(builder, imported, owners)
 
 
-def _read_element(builder: HymekoBuilder, key: Id, element: Element) -> None:
+def _read_element(builder: HymekoBuilder, key: Id, element: ExpandedElement) -> None:
     if key.kind in ("body", "joint"):
         element = element._replace(node=with_named_fields(element.node, builder.prototypes, inherits=element.has_prototype))
     if key.kind in _WITH_SHAPES:
@@ -153,7 +153,7 @@ def _read_element(builder: HymekoBuilder, key: Id, element: Element) -> None:
         read_part(builder, key, element)
 
 
-def _preset(element: Element, name: str) -> str | None:
+def _preset(element: ExpandedElement, name: str) -> str | None:
     return next((str(item.value) for item in element.node.items if is_field(item, (name,)) and isinstance(item.value, str)), None)
 
 
@@ -162,18 +162,18 @@ def _read_root(builder: HymekoBuilder, expanded: Expanded, kinds: list[str], ins
     place = 0
     remaining = iter(kinds)
     for item in expanded.items:
-        if isinstance(item, Element) and _is_about_the_whole(item.node):
+        if isinstance(item, ExpandedElement) and _is_about_the_whole(item.node):
             node = item.node if is_foreign(item.node) else without_comments(item.node)
             for comment in () if node is item.node else comments_in(item.node.items):
                 extra = standing_comment(comment, place)
                 builder.add_extras(ROOT, extra)
                 place += not extra.path
             place += _read_root_block(builder, node, place)
-        elif isinstance(item, Element):
+        elif isinstance(item, ExpandedElement):
             place += 1 + _has_attached(next(remaining), item.node)
         elif isinstance(item, Instance):
             place += len(instances[id(item)].robot.layout)
-        elif isinstance(item, Change):
+        elif isinstance(item, Amendment):
             continue
         elif isinstance(item.item, Field):
             place += _read_setting(builder, item.item, place)
@@ -241,9 +241,11 @@ def _loose_extra(builder: HymekoBuilder, item: ArcItem | Comment, place: int, *,
     return Extra("hymeko", "", print_item(item), place)
 
 
-def _declare(builder: HymekoBuilder, expanded: Expanded, kinds: list[str], instances: dict[int, Imported]) -> list[tuple[Id, Element]]:
+def _declare(
+    builder: HymekoBuilder, expanded: Expanded, kinds: list[str], instances: dict[int, Imported]
+) -> list[tuple[Id, ExpandedElement]]:
     """Every element's id, before anything is read, so that references may look ahead."""
-    declared: list[tuple[Id, Element]] = []
+    declared: list[tuple[Id, ExpandedElement]] = []
     remaining = iter(kinds)
     for element in expanded.items:
         if isinstance(element, Instance):
@@ -251,12 +253,12 @@ def _declare(builder: HymekoBuilder, expanded: Expanded, kinds: list[str], insta
         elif isinstance(element, Statement):
             if isinstance(element.item, Field) and not _is_setting(element.item):
                 _read_datum(builder, element.item)
-        elif isinstance(element, Element) and not _is_about_the_whole(element.node):
+        elif isinstance(element, ExpandedElement) and not _is_about_the_whole(element.node):
             declared += _declared(builder, expanded, element, next(remaining))
     return declared
 
 
-def _declared(builder: HymekoBuilder, expanded: Expanded, element: Element, kind: str) -> list[tuple[Id, Element]]:
+def _declared(builder: HymekoBuilder, expanded: Expanded, element: ExpandedElement, kind: str) -> list[tuple[Id, ExpandedElement]]:
     """The ids of an element: its own, behind that of a fixed body the one of its joint, behind that of data those inside of it."""
     if kind == "axis":
         builder.directions[element.name] = _direction(builder, element)
@@ -287,7 +289,7 @@ def _read_datum(builder: HymekoBuilder, field: Field) -> None:
     builder.layout.append(key)
 
 
-def _direction(builder: HymekoBuilder, element: Element) -> tuple[float, float, float]:
+def _direction(builder: HymekoBuilder, element: ExpandedElement) -> tuple[float, float, float]:
     item = Block(element.node.items, builder.reader).take("direction", "axis", "ax")
     if item is not None:
         return unit_axis(builder, item)[0]

@@ -18,7 +18,7 @@ from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, Quoted
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from hymeko_x.formats.hymeko import Word
+    from hymeko_x.formats.hymeko import FieldWord
     from hymeko_x.frontends.hymeko.values import ValueReader
 
 T = TypeVar("T")
@@ -120,7 +120,7 @@ class Block:
                 return self.nodes.pop(position)
         return None
 
-    def take_words(self, words: Iterable[Word], motion: str = "") -> dict[str, object]:
+    def take_words(self, words: Iterable[FieldWord], motion: str = "") -> dict[str, object]:
         """The attributes that these words set; ``motion`` is what the dimension of that name stands for."""
         found: dict[str, object] = {}
         for word in words:
@@ -129,7 +129,7 @@ class Block:
                 found[word.attribute] = self._word(word, item, motion if word.dimension == "motion" else word.dimension)
         return found
 
-    def _word(self, word: Word, item: Field, dimension: str) -> object:
+    def _word(self, word: FieldWord, item: Field, dimension: str) -> object:
         reader, value = self.reader, item.value
         match word.form:
             case "number":

@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
     from hymeko_x.frontends.hymeko.values import ValueReader
-    from hymeko_x.language.expansion import Element, Scope
+    from hymeko_x.language.expansion import ExpandedElement, Scope
     from hymeko_x.language.syntax import Item, Value
 
 _ROLES = {**{word: role for role, word in SHAPE_ROLES.items()}, "geometry": parts.Role.BOTH}
 _FILE_WORDS = ("file", "url", "uri")
 
 
-def read_body(builder: HymekoBuilder, key: Id, element: Element) -> None:
+def read_body(builder: HymekoBuilder, key: Id, element: ExpandedElement) -> None:
     """A body, or the world's geometry, with everything in its block."""
     items = tuple(item for item in element.node.items if not is_field(item, ("kind",)))
     block = Block([item for item in items if not _is_shape(item) and not is_base_arc(item)], builder.reader)
@@ -78,7 +78,7 @@ def is_base_arc(item: object) -> bool:
     return isinstance(item, ArcItem) and not item.role and sign_of(item) > 0
 
 
-def read_fixed(builder: HymekoBuilder, key: Id, element: Element) -> None:
+def read_fixed(builder: HymekoBuilder, key: Id, element: ExpandedElement) -> None:
     """The joint without dofs between a body and the one that its block names."""
     arcs = [item for item in element.node.items if isinstance(item, ArcItem) and is_base_arc(item)]
     if len(arcs) > 1:

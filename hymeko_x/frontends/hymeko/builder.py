@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
     from hymeko_x.ir.provenance import StoredMesh
     from hymeko_x.ir.values import Pose, Vec3
-    from hymeko_x.language.expansion import Element, Scope
+    from hymeko_x.language.expansion import ExpandedElement, Scope
     from hymeko_x.language.prototypes import Prototypes
     from hymeko_x.language.syntax import Item, Ref
 
@@ -61,7 +61,7 @@ class HymekoBuilder(Builder):
     places: dict[str, str] = field(default_factory=dict)
     stored: dict[Id, StoredMesh | Texture] = field(default_factory=dict)
 
-    def declare(self, kind: str, element: Element) -> Id:
+    def declare(self, kind: str, element: ExpandedElement) -> Id:
         """Reserve the id of an element, so that references find it.
 
         Raises: Refusal (HX023) when the name is taken by an element of the same kind.

@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
     from hymeko_x.ir.mechanism import Extra, Id
-    from hymeko_x.language.expansion import Change
+    from hymeko_x.language.expansion import Amendment
     from hymeko_x.language.syntax import Field, Item
 
 _EDGES = tuple(name for name in KINDS.values() if name in TARGETS or name == "joint")
 _VERTICES = tuple(kind for kind in KINDS.values() if kind not in (*_EDGES, "world", "shape"))
 
 
-def change_element(builder: HymekoBuilder, change: Change) -> None:
+def change_element(builder: HymekoBuilder, change: Amendment) -> None:
     """Give an element the fields in the block of a change; what the block does not name stays.
 
     Raises: Refusal (HX040) when there is no such element, HX062 for fields that it cannot have.
@@ -48,7 +48,7 @@ def change_element(builder: HymekoBuilder, change: Change) -> None:
     _change_extras(builder, key, block.extras)
 
 
-def _target(builder: HymekoBuilder, change: Change) -> Id:
+def _target(builder: HymekoBuilder, change: Amendment) -> Id:
     kinds = tuple(kind.ref.dotted for kind in change.node.stereotypes) or (
         (*_EDGES, "shape") if change.node.edge else (*_VERTICES, "shape")
     )
@@ -66,7 +66,7 @@ def _target(builder: HymekoBuilder, change: Change) -> Id:
     return found
 
 
-def _changed(builder: HymekoBuilder, key: Id, part: Any, block: Block, change: Change) -> Any:
+def _changed(builder: HymekoBuilder, key: Id, part: Any, block: Block, change: Amendment) -> Any:
     """The part with the fields of the block."""
     if isinstance(part, parts.Body):
         add_shapes(builder, key, block, change.node.items, change.scope)
@@ -85,7 +85,7 @@ def _changed(builder: HymekoBuilder, key: Id, part: Any, block: Block, change: C
     return replace(part, **values)
 
 
-def _changed_joint(builder: HymekoBuilder, key: Id, joint: parts.Joint, block: Block, change: Change) -> parts.Joint:
+def _changed_joint(builder: HymekoBuilder, key: Id, joint: parts.Joint, block: Block, change: Amendment) -> parts.Joint:
     if len(joint.dofs) != 1:
         message = f"{key} has {len(joint.dofs)} dofs; only the fields of a joint with one dof can be changed"
         raise builder.reader.refuse(change.node, message)

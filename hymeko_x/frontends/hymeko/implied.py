@@ -12,10 +12,10 @@ from hymeko_x.language.syntax import ArcItem, is_field
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.language.expansion import Element
+    from hymeko_x.language.expansion import ExpandedElement
 
 
-def imply_actuators(builder: HymekoBuilder, declared: list[tuple[Id, Element]]) -> None:
+def imply_actuators(builder: HymekoBuilder, declared: list[tuple[Id, ExpandedElement]]) -> None:
     """Make the actuators that transmissions name and the text does not describe."""
     for key, element in declared:
         if key.kind != "drive" or not any(is_field(item, (TYPE,)) for item in element.node.items):

@@ -15,7 +15,7 @@ from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge, pose_weight
 from hymeko_x.ir.parts import Joint, World
 from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse
 from hymeko_x.joining import held, on_body, with_names
-from hymeko_x.language.expansion import Change, Instance
+from hymeko_x.language.expansion import Amendment, Instance
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, Ref, is_field
 from hymeko_x.language.templates import is_definition
 
@@ -103,11 +103,11 @@ def _frame_of_world(robot: Mechanism) -> Pose:
 # ---- placing -------------------------------------------------------------------------------------------------------------------
 
 
-def changes_in(imported: Imported) -> Iterator[Change]:
+def changes_in(imported: Imported) -> Iterator[Amendment]:
     """The changes in the block of an instance: its nodes, each called as an element of the robot."""
     for item in imported.instance.node.items:
         if isinstance(item, Node) and not is_definition(item):
-            yield Change(item, imported.instance.inner)
+            yield Amendment(item, imported.instance.inner)
 
 
 def place_instance(builder: HymekoBuilder, imported: Imported, owners: dict[Id, tuple[Id, RobotArc]]) -> None:

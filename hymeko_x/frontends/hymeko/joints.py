@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
     from hymeko_x.frontends.hymeko.values import ValueReader
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.language.expansion import Element, Scope
+    from hymeko_x.language.expansion import ExpandedElement, Scope
     from hymeko_x.language.syntax import Item
 
 _BODIES = ("body", "world")
@@ -37,7 +37,7 @@ _Axis = tuple[Vec3, Written | None]
 """A unit vector, and the vector as written where that is another one."""
 
 
-def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | None) -> None:
+def read_joint(builder: HymekoBuilder, key: Id, element: ExpandedElement, moves: str | None) -> None:
     """A joint: its ends, its dofs, and the coupling that `mimic` adds. ``moves`` is the preset of its type, if there is one.
 
     Raises: Refusal (HX045) for a joint without its ends, HX062 for values, HX040 for references.

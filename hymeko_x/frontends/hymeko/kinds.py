@@ -10,7 +10,7 @@ from hymeko_x.language.prototypes import meaning_of, role_of
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, QuotedName, Value, is_field, is_list
 
 if TYPE_CHECKING:
-    from hymeko_x.language.expansion import Element, Expanded
+    from hymeko_x.language.expansion import Expanded, ExpandedElement
 
 _EDGES = {"+": 1, "<-": 1, "-": -1, "->": -1}
 _SPRING = frozenset({"spring_constant", "stiffness", "k"})
@@ -22,7 +22,7 @@ _COMPLIANT = frozenset({"spring", "damper", "port"})
 _ALL = frozenset(KINDS.values()) | {"axis"}
 
 
-def infer_kinds(expanded: Expanded, elements: list[Element]) -> list[str]:
+def infer_kinds(expanded: Expanded, elements: list[ExpandedElement]) -> list[str]:
     """The kind of every element, in order."""
     by_name: dict[str, list[int]] = {}
     for number, element in enumerate(elements):
@@ -42,7 +42,7 @@ def infer_kinds(expanded: Expanded, elements: list[Element]) -> list[str]:
     return kinds
 
 
-def _holds_joints(element: Element) -> bool:
+def _holds_joints(element: ExpandedElement) -> bool:
     """Whether joints stand inside of a vertex: the parts of a whole that is described as a graph, and no robot."""
     stack = [] if element.node.edge else [item for item in element.node.items if isinstance(item, Node)]
     while stack:
@@ -53,7 +53,7 @@ def _holds_joints(element: Element) -> bool:
     return False
 
 
-def _is_bare_graph(elements: list[Element], kinds: list[str], by_name: dict[str, list[int]]) -> bool:
+def _is_bare_graph(elements: list[ExpandedElement], kinds: list[str], by_name: dict[str, list[int]]) -> bool:
     """Whether there are names and arrows alone, and the arrows make no tree of bodies: two lead to one vertex, or one to each."""
     ends: list[int | None] = []
     for element, kind in zip(elements, kinds, strict=True):
@@ -69,7 +69,7 @@ def _is_bare_graph(elements: list[Element], kinds: list[str], by_name: dict[str,
     return len(ends) > len(set(ends)) or len(ends) >= vertices > 0
 
 
-def is_direction(element: Element) -> bool:
+def is_direction(element: ExpandedElement) -> bool:
     """Whether an untyped node is one of the standard directions, or gives a direction by `axis` or `ax`."""
     node = element.node
     if node.edge or any(isinstance(item, Node | ArcItem) for item in node.items):
@@ -78,7 +78,7 @@ def is_direction(element: Element) -> bool:
     return (not fields and element.name in AXES) or (len(fields) == 1 and bool(fields & {"axis", "ax", "direction"}))
 
 
-def typed_kind(element: Element) -> str:
+def typed_kind(element: ExpandedElement) -> str:
     """The kind that the element's types preset, or nothing."""
     if (
         element.has_prototype
@@ -96,7 +96,7 @@ def typed_kind(element: Element) -> str:
     return ""
 
 
-def _default(element: Element, mode: str) -> str:
+def _default(element: ExpandedElement, mode: str) -> str:
     if element.node.edge:
         return "joint" if mode == "robot" else "relation"
     if is_direction(element):
@@ -104,7 +104,7 @@ def _default(element: Element, mode: str) -> str:
     return "body" if mode == "robot" else "datum"
 
 
-def _infer_from_edges(elements: list[Element], kinds: list[str], by_name: dict[str, list[int]]) -> None:
+def _infer_from_edges(elements: list[ExpandedElement], kinds: list[str], by_name: dict[str, list[int]]) -> None:
     """In an untyped root: an edge with one body on each side is a joint, one with a spring or damper is constitutive."""
     for number, element in enumerate(elements):
         if not element.node.edge or kinds[number] or element.types or _is_plain(element.node):
@@ -152,13 +152,13 @@ def _may_be_pose(weight: tuple[Value, ...]) -> bool:
     )
 
 
-def _target(arc: ArcItem, element: Element, by_name: dict[str, list[int]]) -> int | None:
+def _target(arc: ArcItem, element: ExpandedElement, by_name: dict[str, list[int]]) -> int | None:
     name = element.scope.resolve(arc.ref.path)
     found = by_name.get(name or "", [])
     return found[0] if found else None
 
 
-def _is_joint(ends: list[tuple[ArcItem, int | None]], elements: list[Element]) -> bool:
+def _is_joint(ends: list[tuple[ArcItem, int | None]], elements: list[ExpandedElement]) -> bool:
     """One tail and one head that are no directions, and nothing else but directions."""
     signs: list[int] = []
     for arc, end in ends:
@@ -170,17 +170,17 @@ def _is_joint(ends: list[tuple[ArcItem, int | None]], elements: list[Element]) -
     return sorted(signs) == [-1, 1]
 
 
-def _is_data(element: Element) -> bool:
+def _is_data(element: ExpandedElement) -> bool:
     """Whether a vertex has fields, and none that a body has."""
     fields = {item.name for item in element.node.items if isinstance(item, Field) and item.value is not None}
     return bool(fields) and fields.isdisjoint(_BODY_WORDS | {"name", "color", "origin", "rotation", "axes"})
 
 
-def _fields(element: Element) -> set[str]:
+def _fields(element: ExpandedElement) -> set[str]:
     return {getattr(item, "name", "") for item in element.node.items}
 
 
-def _lumped(element: Element) -> str:
+def _lumped(element: ExpandedElement) -> str:
     """The lumped element of the dynamics dialect that a node's fields describe, or nothing."""
     fields = {item.name for item in element.node.items if isinstance(item, Field)}
     if fields & _SPRING:

@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.block import Block
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.language.expansion import Element, Scope
+    from hymeko_x.language.expansion import ExpandedElement, Scope
     from hymeko_x.language.syntax import ArcItem
 
 DOMAINS = ("translation", "rotation")
 
 
-def set_domain(builder: HymekoBuilder, kind: str, element: Element, values: dict[str, object]) -> None:
+def set_domain(builder: HymekoBuilder, kind: str, element: ExpandedElement, values: dict[str, object]) -> None:
     """Set the domain of a spring, damper or mass from the unit of its value, unless the text names it.
 
     Raises: Refusal (HX062) for a unit of another quantity, for a domain that is not known, and where the two contradict each other.

@@ -9,7 +9,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko.nesting import BLOCK_SETTINGS, OUTER, nest_edge, nest_key, prefix_of
 from hymeko_x.frontends.hymeko.block import is_written
 from hymeko_x.frontends.hymeko.kinds import typed_kind
-from hymeko_x.language.expansion import Element, Expanded, Scope, Statement
+from hymeko_x.language.expansion import Expanded, ExpandedElement, Scope, Statement
 from hymeko_x.language.machine import MAX_DEPTH
 from hymeko_x.language.markup import is_foreign
 from hymeko_x.language.syntax import Field, Node, QuotedName
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from hymeko_x.language.syntax import Item
 
 
-def declare_inside(builder: HymekoBuilder, expanded: Expanded, key: Id, element: Element) -> list[tuple[Id, Element]]:
+def declare_inside(builder: HymekoBuilder, expanded: Expanded, key: Id, element: ExpandedElement) -> list[tuple[Id, ExpandedElement]]:
     """The element without what stands inside of it, and all of that, with their ids; the edges that tell so are added.
 
     Raises: Refusal (HX062) for anything inside of data that is no data.
     """
-    found: list[tuple[Id, Element]] = []
+    found: list[tuple[Id, ExpandedElement]] = []
     stack = [(key, element, 0)]
     while stack:
         outer, element, depth = stack.pop()
@@ -49,7 +49,7 @@ def declare_inside(builder: HymekoBuilder, expanded: Expanded, key: Id, element:
     return found
 
 
-def _endless(builder: HymekoBuilder, element: Element) -> Refusal:
+def _endless(builder: HymekoBuilder, element: ExpandedElement) -> Refusal:
     message = f"'{element.node.name}' is nested more than {MAX_DEPTH} levels deep"
     origin = builder.reader.origin(element.node)
     return refuse(codes.BAD_TEMPLATE, message, origin, hint="a block that holds a copy of itself never ends")
@@ -64,13 +64,13 @@ def _is_inside(outer: Id, item: Item) -> bool:
     return isinstance(item.name, QuotedName) or item.name not in BLOCK_SETTINGS
 
 
-def _inner(builder: HymekoBuilder, expanded: Expanded, item: Expansion, scope: Scope) -> tuple[str, Element]:
+def _inner(builder: HymekoBuilder, expanded: Expanded, item: Expansion, scope: Scope) -> tuple[str, ExpandedElement]:
     """The kind of an element inside of data, and the element."""
     if isinstance(item, Statement) and isinstance(item.item, Field):
         field = item.item
         scope.elements.add(field.name)
-        return "datum", Element(scope.full(field.name), Node(field.name, line=field.line, column=field.column), (), scope)
-    if not isinstance(item, Element):
+        return "datum", ExpandedElement(scope.full(field.name), Node(field.name, line=field.line, column=field.column), (), scope)
+    if not isinstance(item, ExpandedElement):
         node = item.item if isinstance(item, Statement) else item.node
         raise builder.reader.refuse(node, "data holds data and relations, no robots of other files")
     kind = "" if item.has_prototype else typed_kind(item)

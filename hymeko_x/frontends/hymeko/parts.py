@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.values import ParameterValue
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import DataValue
-    from hymeko_x.language.expansion import Element
+    from hymeko_x.language.expansion import ExpandedElement
     from hymeko_x.language.syntax import Item
 
 
-def read_part(builder: HymekoBuilder, key: Id, element: Element) -> None:
+def read_part(builder: HymekoBuilder, key: Id, element: ExpandedElement) -> None:
     """Add a vertex or an edge, and the edge whose arcs stand in a vertex's block.
 
     Raises: Refusal (HX062) for a part without a field that it needs, HX040 for references.
@@ -73,7 +73,7 @@ def _parameters(builder: HymekoBuilder, kind: str, block: Block) -> tuple[tuple[
     return (*block.take_rest(builder.reader.parameter), *_nested_parameters(builder, block))
 
 
-def _made(builder: HymekoBuilder, key: Id, element: Element, values: Mapping[str, Any]) -> Any:
+def _made(builder: HymekoBuilder, key: Id, element: ExpandedElement, values: Mapping[str, Any]) -> Any:
     """The part of these values. Raises: Refusal (HX062) when it needs others."""
     words = PARTS[key.kind]
     try:
@@ -127,7 +127,7 @@ def _is_texture(kind: str, item: Item) -> bool:
     return kind == "material" and is_field(item, (TEXTURE,))
 
 
-def _attached_arcs(builder: HymekoBuilder, key: Id, element: Element, type: str) -> tuple[RobotArc, ...]:
+def _attached_arcs(builder: HymekoBuilder, key: Id, element: ExpandedElement, type: str) -> tuple[RobotArc, ...]:
     """The arcs in the block of a vertex, of this type where its kind has types."""
     edge = attached_key(key)
     arcs: list[RobotArc] = []

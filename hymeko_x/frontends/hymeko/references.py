@@ -12,7 +12,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko.nesting import OUTER, nest_edge, nest_key, prefix_of
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.language.expansion import Element, Statement
+from hymeko_x.language.expansion import ExpandedElement, Statement
 from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_list
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from hymeko_x.language.expansion import Expansion, Scope
     from hymeko_x.language.syntax import Item, Value
 
-_Declared = list[tuple["Id", Element]]
+_Declared = list[tuple["Id", ExpandedElement]]
 
 
 class _Holder(NamedTuple):
@@ -83,7 +83,7 @@ class _Resolver:
             if isinstance(statement, Statement) and isinstance(field, Field) and field.value is not None:
                 self._roots[field.name] = _Holder(field.name, field, statement.scope)
 
-    def resolved(self, key: Id, element: Element) -> Element:
+    def resolved(self, key: Id, element: ExpandedElement) -> ExpandedElement:
         """The element with values in the place of references."""
         scope = element.scope.scopes.get(element.node.name, element.scope) if key.kind in OUTER else element.scope
         items = self._items(key, element.node.items, scope)

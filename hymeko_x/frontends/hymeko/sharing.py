@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
     from hymeko_x.frontends.hymeko.values import ValueReader
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.language.expansion import Element, Expanded, Scope
+    from hymeko_x.language.expansion import Expanded, ExpandedElement, Scope
     from hymeko_x.language.syntax import Item
 
 FOLLOWS = "<follows>"
@@ -39,7 +39,9 @@ class _Ends(Struct):
     compliant: list[ArcItem] = field(default_factory=list)
 
 
-def with_followers(expanded: Expanded, elements: Sequence[Element], kinds: list[str], reader: ValueReader) -> tuple[Expanded, list[str]]:
+def with_followers(
+    expanded: Expanded, elements: Sequence[ExpandedElement], kinds: list[str], reader: ValueReader
+) -> tuple[Expanded, list[str]]:
     """The text with a joint for every child of an edge, and the kinds of its elements; before, they are ``elements`` and ``kinds``.
 
     Raises: Refusal (HX062) for a block on the arc of a child that holds no ratio.
@@ -47,7 +49,7 @@ def with_followers(expanded: Expanded, elements: Sequence[Element], kinds: list[
     by_name: dict[str, set[str]] = {"world": {"body"}}
     for element, kind in zip(elements, kinds, strict=True):
         by_name.setdefault(element.name, set()).add(kind)
-    split: dict[int, list[Element]] = {}
+    split: dict[int, list[ExpandedElement]] = {}
     for element, kind in zip(elements, kinds, strict=True):
         if kind == "joint" and element.node.edge and len((ends := _ends(element, by_name)).children) > 1:
             split[id(element)] = _split(element, ends, reader)
@@ -58,7 +60,7 @@ def with_followers(expanded: Expanded, elements: Sequence[Element], kinds: list[
     return expanded._replace(items=items), [kind for kind, count in zip(kinds, counts, strict=True) for _ in range(count)]
 
 
-def _ends(element: Element, by_name: Mapping[str, set[str]]) -> _Ends:
+def _ends(element: ExpandedElement, by_name: Mapping[str, set[str]]) -> _Ends:
     """The arcs of an edge by what they lead to; of arrows alone (``-> base, -> tip``) the first one leads to the parent."""
     ends = _Ends()
     for arc in element.node.items:
@@ -74,7 +76,7 @@ def _ends(element: Element, by_name: Mapping[str, set[str]]) -> _Ends:
     return ends
 
 
-def _split(element: Element, ends: _Ends, reader: ValueReader) -> list[Element]:
+def _split(element: ExpandedElement, ends: _Ends, reader: ValueReader) -> list[ExpandedElement]:
     """The joints of an edge: the one of its first child, and those that follow it."""
     node = element.node
     first, *others = ends.children

@@ -34,21 +34,21 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats.mjcf.codec import Settings
-    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.source import Source
+    from hymeko_x.xml.tree import XmlNode
 
 
 _CARRIER = re.compile(rf".*{RESIDUE}\d*", re.DOTALL)
 
 
 def read(source: Source, report: Report) -> Reading:
-    """The mechanism that an MJCF file describes, and the residue that it carries.
+    """The mechanism that an MJCF file describes, and the residue that it contains.
 
     Raises: Refusal for what MuJoCo refuses as well, with file and line.
     """
     root = parse(source, report)
     _check_root(root)
-    carried = "".join(_take_carried(root))
+    residue = "".join(_take_residue(root))
     root = expand_includes(root, source, report)
     words = check_words(root)
     if words.tags & EXPANDED_BY_MUJOCO:
@@ -70,10 +70,10 @@ def read(source: Source, report: Report) -> Reading:
     read_sensors(root.detach("sensor"), builder)
     check_references(words.references, builder)
     builder.keep_rest(root)
-    return Reading(builder.finish(name), carried)
+    return Reading(builder.finish(name), residue)
 
 
-def _settings(root: Element) -> Settings:
+def _settings(root: XmlNode) -> Settings:
     """The settings of all <compiler> elements together; a later one wins."""
     compilers = [child for child in root.children if child.tag == "compiler"]
     for compiler in compilers:
@@ -84,14 +84,14 @@ def _settings(root: Element) -> Settings:
     return settings_of([compiler.attributes for compiler in compilers])
 
 
-def _keep_sections(root: Element, builder: MjcfBuilder) -> None:
+def _keep_sections(root: XmlNode, builder: MjcfBuilder) -> None:
     """Keep comments and the sections that the IR cannot represent, in order; others refer to them."""
     for child in root.detach(COMMENT, *KEPT_SECTIONS):
         builder.keep_at_root(child)
         child.release()
 
 
-def _take_carried(root: Element) -> Iterator[str]:
+def _take_residue(root: XmlNode) -> Iterator[str]:
     """The texts that hold a residue, out of their sections. Where robots were joined, each begins with what their names begin with."""
     for section in root_sections(root, "custom"):
         own = [text for text in section.children if text.tag == "text" and _CARRIER.fullmatch(text.attributes.get("name", ""))]
@@ -107,25 +107,25 @@ def _take_carried(root: Element) -> Iterator[str]:
             root.children.remove(section)
 
 
-def root_sections(root: Element, tag: str) -> list[Element]:
+def root_sections(root: XmlNode, tag: str) -> list[XmlNode]:
     """The sections of this name, which stay in the tree."""
     return [child for child in root.children if child.tag == tag]
 
 
-def _check_root(root: Element) -> None:
+def _check_root(root: XmlNode) -> None:
     if root.tag == "mujoco":
         return
     hint = "it is a part that other files include, and no model of its own" if root.tag == "mujocoinclude" else formats.root_hint(root.tag)
     raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <mujoco>", root.origin, hint=hint)
 
 
-def _warn_of_ignored(root: Element, report: Report) -> None:
+def _warn_of_ignored(root: XmlNode, report: Report) -> None:
     for child in root_sections(root, "body"):
         message = "a <body> outside of <worldbody> is ignored by MuJoCo; it is kept as an extra"
         report.warn(codes.UNKNOWN_WORD, message, child.origin)
 
 
-def _read_name(root: Element, source: Source, builder: MjcfBuilder) -> str:
+def _read_name(root: XmlNode, source: Source, builder: MjcfBuilder) -> str:
     name = root.take("model")
     if name:
         return name

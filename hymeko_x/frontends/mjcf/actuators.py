@@ -16,16 +16,16 @@ from hymeko_x.xml.tree import read_numbers
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.parts import Parameters
+    from hymeko_x.xml.tree import XmlNode
 
 _KINDS = {"jointinparent": "joint", "cranksite": "site", "slidersite": "site", "refsite": "site"}
 _ROLES = {"cranksite": "crank", "slidersite": "slider", "refsite": "reference"}
 
 
-def read_actuators(sections: list[Element], builder: MjcfBuilder) -> None:
+def read_actuators(sections: list[XmlNode], builder: MjcfBuilder) -> None:
     """Actuators in order, each with the edge to what it acts on."""
     for section in sections:
         for element in section.children:
@@ -35,7 +35,7 @@ def read_actuators(sections: list[Element], builder: MjcfBuilder) -> None:
                 _read_actuator(element, builder)
 
 
-def _read_actuator(element: Element, builder: MjcfBuilder) -> None:
+def _read_actuator(element: XmlNode, builder: MjcfBuilder) -> None:
     target = next((element.attributes[word] for word in TRANSMISSIONS if word in element.attributes), "")
     key = builder.own(element, "actuator", f"{target}_{element.tag}")
     tag = element.tag if element.tag != "plugin" else "general"
@@ -69,7 +69,7 @@ def _own(parameters: Parameters, base: Mapping[str, str], *, autolimits: bool) -
     return tuple(pair for pair in parameters if pair[0] not in taken) if taken else parameters
 
 
-def _check(element: Element, attributes: dict[str, str], words: list[str], builder: MjcfBuilder) -> None:
+def _check(element: XmlNode, attributes: dict[str, str], words: list[str], builder: MjcfBuilder) -> None:
     """What MuJoCo refuses."""
     if not words:
         raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag}> acts on nothing: it needs {', '.join(TRANSMISSIONS[:6])}", element.origin)
@@ -92,7 +92,7 @@ def _check(element: Element, attributes: dict[str, str], words: list[str], build
             )
 
 
-def _arc(element: Element, word: str, gear: tuple[float, ...] | None, builder: MjcfBuilder) -> RobotArc:
+def _arc(element: XmlNode, word: str, gear: tuple[float, ...] | None, builder: MjcfBuilder) -> RobotArc:
     name = element.take(word) or ""
     target = builder.find(element, _KINDS.get(word, word), name)
     role = _ROLES.get(word) or (builder.roles.get(target, {}).get(name, "") if target.kind == "joint" else "")

@@ -17,11 +17,11 @@ from hymeko_x.ir.parts import Material, Mesh, Texture
 from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
+    from hymeko_x.xml.tree import XmlNode
 
 
-def read_assets(sections: list[Element], builder: MjcfBuilder) -> None:
+def read_assets(sections: list[XmlNode], builder: MjcfBuilder) -> None:
     """Textures first, since materials refer to them."""
     for section in sections:
         for element in section.detach("texture"):
@@ -36,7 +36,7 @@ def read_assets(sections: list[Element], builder: MjcfBuilder) -> None:
             builder.keep_at_root(element, "asset")
 
 
-def _uri(element: Element, file: str, folder: str, builder: MjcfBuilder) -> str:
+def _uri(element: XmlNode, file: str, folder: str, builder: MjcfBuilder) -> str:
     """The path of a file from the main file: in the folder of <compiler>, else beside the main file, else beside the included one."""
     uri = joined(folder, file, builder.settings)
     if folder or element.file == builder.file or builder.files.find(uri) is not None:
@@ -45,7 +45,7 @@ def _uri(element: Element, file: str, folder: str, builder: MjcfBuilder) -> str:
     return uri if builder.files.find(beside) is None else beside
 
 
-def read_mesh(element: Element, builder: MjcfBuilder) -> None:
+def read_mesh(element: XmlNode, builder: MjcfBuilder) -> None:
     """A mesh: a file below <compiler meshdir>, or inline data."""
     file = element.take("file")
     uri = None if file is None else _uri(element, file, builder.settings.mesh_folder, builder)
@@ -66,7 +66,7 @@ def read_mesh(element: Element, builder: MjcfBuilder) -> None:
         builder.show(key)
 
 
-def _check_mesh(element: Element, uri: str | None, count: int, faces: tuple[int, ...]) -> None:
+def _check_mesh(element: XmlNode, uri: str | None, count: int, faces: tuple[int, ...]) -> None:
     """What MuJoCo refuses in inline data."""
     made = uri is not None or "builtin" in element.attributes or any(child.tag == "plugin" for child in element.children)
     if count % 3 or len(faces) % 3:
@@ -80,7 +80,7 @@ def _check_mesh(element: Element, uri: str | None, count: int, faces: tuple[int,
         raise refuse(codes.BAD_NUMBER, f"<mesh face> refers to a point that is not there; there are {count // 3}", element.origin)
 
 
-def read_texture(element: Element, builder: MjcfBuilder) -> None:
+def read_texture(element: XmlNode, builder: MjcfBuilder) -> None:
     """An image, or a pattern whose description stays with it."""
     file = element.take("file")
     uri = None if file is None else _uri(element, file, builder.settings.texture_folder, builder)
@@ -99,12 +99,12 @@ def read_texture(element: Element, builder: MjcfBuilder) -> None:
     builder.show(key)
 
 
-def _skybox(element: Element) -> str:
+def _skybox(element: XmlNode) -> str:
     """Textures may be nameless; none of them is referred to, and there may be several."""
     return f"\0{element.file}:{element.line}:{id(element)}"
 
 
-def read_material(element: Element, builder: MjcfBuilder) -> None:
+def read_material(element: XmlNode, builder: MjcfBuilder) -> None:
     """A material with the textures on it."""
     key = builder.own(element, "material", "material")
     base = builder.base(element, key)
@@ -122,7 +122,7 @@ def read_material(element: Element, builder: MjcfBuilder) -> None:
     builder.keep(element, key)
 
 
-def _put(element: Element, texture: str, material: Id, use: str, builder: MjcfBuilder) -> None:
+def _put(element: XmlNode, texture: str, material: Id, use: str, builder: MjcfBuilder) -> None:
     edge = builder.names.take("layer", material.name)
     builder.edges[edge] = layer_edge(builder.find(element, "texture", texture), material, use)
     builder.show(edge)

@@ -10,7 +10,7 @@ from hymeko_x.formats.mjcf import notations
 from hymeko_x.formats.mjcf.codec import POSE, BadAttribute
 from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
 from hymeko_x.formats.mjcf.words import kind_of
-from hymeko_x.frontends.mjcf.builder import Scope, placed
+from hymeko_x.frontends.mjcf.builder import BodyScope, placed
 from hymeko_x.frontends.mjcf.geoms import read_geom
 from hymeko_x.frontends.mjcf.joints import read_joints
 from hymeko_x.frontends.mjcf.mounts import read_camera, read_light, read_site
@@ -21,14 +21,14 @@ from hymeko_x.ir.values import compose
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.values import Pose
+    from hymeko_x.xml.tree import XmlNode
 
 
-_READERS: dict[str, Callable[[Element, Scope, MjcfBuilder], None]] = {
+_READERS: dict[str, Callable[[XmlNode, BodyScope, MjcfBuilder], None]] = {
     "geom": read_geom,
     "site": read_site,
     "camera": read_camera,
@@ -40,7 +40,7 @@ _PLACE = (POSE,)
 _WEIGHT = (INERTIAL,)
 
 
-def reserve_names(root: Element, builder: MjcfBuilder) -> None:
+def reserve_names(root: XmlNode, builder: MjcfBuilder) -> None:
     """Names that authors gave come before those that we make up."""
     for section in root.children:
         stack = [section]
@@ -53,24 +53,24 @@ def reserve_names(root: Element, builder: MjcfBuilder) -> None:
             stack += element.children
 
 
-def read_worldbody(sections: list[Element], builder: MjcfBuilder) -> None:
+def read_worldbody(sections: list[XmlNode], builder: MjcfBuilder) -> None:
     """The world's own geometry, and every tree below it."""
     for section in sections:
-        stack: list[tuple[Element, Scope | None]] = [(section, None)]
+        stack: list[tuple[XmlNode, BodyScope | None]] = [(section, None)]
         while stack:
             element, scope = stack.pop()
             below = _read_world(element, builder) if scope is None else _read_body(element, scope, builder)
             stack.extend(reversed(below))
 
 
-def _read_world(element: Element, builder: MjcfBuilder) -> list[tuple[Element, Scope | None]]:
+def _read_world(element: XmlNode, builder: MjcfBuilder) -> list[tuple[XmlNode, BodyScope | None]]:
     childclass = element.attributes.get("childclass")
-    below = _read_content(element, Scope(WORLD, WORLD.name, childclass=childclass), builder)
+    below = _read_content(element, BodyScope(WORLD, WORLD.name, childclass=childclass), builder)
     builder.keep(element, WORLD)
     return below
 
 
-def _read_body(element: Element, scope: Scope, builder: MjcfBuilder) -> list[tuple[Element, Scope | None]]:
+def _read_body(element: XmlNode, scope: BodyScope, builder: MjcfBuilder) -> list[tuple[XmlNode, BodyScope | None]]:
     stem = element.attributes.get("name") or scope.stem
     key = builder.own(element, "body", f"{scope.stem}_body")
     childclass = element.take("childclass")
@@ -83,13 +83,13 @@ def _read_body(element: Element, scope: Scope, builder: MjcfBuilder) -> list[tup
     pose = placed(builder.values(element, _PLACE, {}, key, always=bool(scope.frame))["pose"], scope)
     builder.vertices[key] = Body(_read_inertial(element, key, builder))
     builder.show(key)
-    here = Scope(key, stem, childclass=childclass or scope.childclass)
+    here = BodyScope(key, stem, childclass=childclass or scope.childclass)
     below = _read_content(element, here, builder, joined=(scope.body, pose))
     builder.keep(element, key)
     return below
 
 
-def _check_mocap(element: Element, scope: Scope) -> None:
+def _check_mocap(element: XmlNode, scope: BodyScope) -> None:
     """A body that is moved from outside is a child of the world and has no joints."""
     if element.attributes.get("mocap") != "true":
         return
@@ -98,7 +98,7 @@ def _check_mocap(element: Element, scope: Scope) -> None:
         raise refuse(codes.UNKNOWN_WORD, "a mocap body is a child of the world and has no joints", element.origin)
 
 
-def _read_inertial(element: Element, key: Id, builder: MjcfBuilder) -> Inertial | None:
+def _read_inertial(element: XmlNode, key: Id, builder: MjcfBuilder) -> Inertial | None:
     if builder.settings.inertia_from_geoms:
         return None
     found = element.detach("inertial")
@@ -111,7 +111,7 @@ def _read_inertial(element: Element, key: Id, builder: MjcfBuilder) -> Inertial 
     return inertial
 
 
-def _read_framed_inertial(node: Element, scope: Scope, builder: MjcfBuilder, *, in_world: bool) -> Inertial | None:
+def _read_framed_inertial(node: XmlNode, scope: BodyScope, builder: MjcfBuilder, *, in_world: bool) -> Inertial | None:
     """The inertial of a body that stands in a <frame> of it."""
     if in_world:
         raise refuse(codes.UNKNOWN_WORD, "the world cannot have an inertial", node.origin)
@@ -125,13 +125,13 @@ def _read_framed_inertial(node: Element, scope: Scope, builder: MjcfBuilder, *, 
 
 
 def _read_content(
-    element: Element, here: Scope, builder: MjcfBuilder, joined: tuple[Id, Pose] | None = None
-) -> list[tuple[Element, Scope | None]]:
+    element: XmlNode, here: BodyScope, builder: MjcfBuilder, joined: tuple[Id, Pose] | None = None
+) -> list[tuple[XmlNode, BodyScope | None]]:
     """Joints, geoms, sites, cameras and lights, also those in frames. Returns the bodies inside, with their spots."""
-    below: list[tuple[Element, Scope | None]] = []
-    joints: list[tuple[Element, Scope]] = []
-    content: list[tuple[Element, Scope]] = []
-    left: list[Element] = []
+    below: list[tuple[XmlNode, BodyScope | None]] = []
+    joints: list[tuple[XmlNode, BodyScope]] = []
+    content: list[tuple[XmlNode, BodyScope]] = []
+    left: list[XmlNode] = []
     framed = "frame" in [child.tag for child in element.children]
     for child, scope in _unframed(element, here, builder) if framed else [(child, here) for child in element.children]:
         if child.tag == "body":
@@ -154,9 +154,9 @@ def _read_content(
     return below
 
 
-def _unframed(element: Element, here: Scope, builder: MjcfBuilder) -> list[tuple[Element, Scope]]:
+def _unframed(element: XmlNode, here: BodyScope, builder: MjcfBuilder) -> list[tuple[XmlNode, BodyScope]]:
     """The children of a body, and of the frames in it, in order, each with its scope. Frames are noted at the body."""
-    found: list[tuple[Element, Scope]] = []
+    found: list[tuple[XmlNode, BodyScope]] = []
     stack = [(child, here) for child in reversed(element.children)]
     count = 0
     while stack:
@@ -170,13 +170,13 @@ def _unframed(element: Element, here: Scope, builder: MjcfBuilder) -> list[tuple
     return found
 
 
-def _read_frame(element: Element, scope: Scope, number: int, builder: MjcfBuilder) -> Scope:
+def _read_frame(element: XmlNode, scope: BodyScope, number: int, builder: MjcfBuilder) -> BodyScope:
     """A <frame>: noted with its attributes as they are, behind the number of the frame around it."""
-    builder.note(scope.body, notations.frame(number), notations.Frame(scope.frame or "0", element.attributes))
+    builder.note(scope.body, notations.frame(number), notations.MjcfFrame(scope.frame or "0", element.attributes))
     try:
         pose = POSE.read(element.attributes, builder.settings)
     except BadAttribute as error:
         raise builder.bad(element, error) from error
     if "childclass" in element.attributes:
         builder.check_class(element, element.attributes["childclass"])
-    return Scope(scope.body, scope.stem, str(number), compose(scope.pose, pose), element.attributes.get("childclass", scope.childclass))
+    return BodyScope(scope.body, scope.stem, str(number), compose(scope.pose, pose), element.attributes.get("childclass", scope.childclass))

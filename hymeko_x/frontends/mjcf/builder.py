@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Refusal, Report
     from hymeko_x.formats.mjcf.classes import Classes
-    from hymeko_x.formats.mjcf.codec import Group, Settings
-    from hymeko_x.formats.mjcf.tree import Element
+    from hymeko_x.formats.mjcf.codec import AttributeGroup, Settings
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files
+    from hymeko_x.xml.tree import XmlNode
 
 Values = dict[str, Any]
 
@@ -54,7 +54,7 @@ class MjcfBuilder(Builder):
 
     # ---- names -----------------------------------------------------------------------------------------------------------
 
-    def own(self, element: Element, kind: str, unnamed: str) -> Id:
+    def own(self, element: XmlNode, kind: str, unnamed: str) -> Id:
         """A fresh id for an element of the mechanism: its name, or one made from ``unnamed`` that no other format's reader sees."""
         name = element.take("name")
         if name:
@@ -66,7 +66,7 @@ class MjcfBuilder(Builder):
         self.origins[key] = element.origin
         return key
 
-    def register(self, element: Element, tag: str, name: str, key: Id) -> None:
+    def register(self, element: XmlNode, tag: str, name: str, key: Id) -> None:
         """Make an element known by name. Raises: Refusal when another one of its kind has it."""
         place = (tag, name)
         first = self.named.get(place)
@@ -79,7 +79,7 @@ class MjcfBuilder(Builder):
                 element=str(key),
             )
 
-    def find(self, element: Element, kind: str, name: str) -> Id:
+    def find(self, element: XmlNode, kind: str, name: str) -> Id:
         """The element of this kind and name. Raises: Refusal (HX040)."""
         found = self.named.get((kind, name))
         if found is None:
@@ -94,7 +94,7 @@ class MjcfBuilder(Builder):
 
     # ---- values ----------------------------------------------------------------------------------------------------------
 
-    def base(self, element: Element, key: Id, childclass: str | None = None, tag: str = "") -> Mapping[str, str]:
+    def base(self, element: XmlNode, key: Id, childclass: str | None = None, tag: str = "") -> Mapping[str, str]:
         """The attributes that the element's class gives; the class is noted."""
         own = element.take("class")
         if own is not None:
@@ -102,13 +102,20 @@ class MjcfBuilder(Builder):
             self.stereotypes[key] = (own,)
         return self.classes.of(tag or element.tag, own or childclass)
 
-    def check_class(self, element: Element, name: str) -> None:
+    def check_class(self, element: XmlNode, name: str) -> None:
         """Raises: Refusal (HX040) when there is no such class."""
         if not self.classes.has(name):
             raise refuse(codes.UNDEFINED_REFERENCE, f"<{element.tag}> has the class '{name}', which is not defined", element.origin)
 
     def values(
-        self, element: Element, groups: tuple[Group, ...], base: Mapping[str, str], key: Id, prefix: str = "", *, always: bool = False
+        self,
+        element: XmlNode,
+        groups: tuple[AttributeGroup, ...],
+        base: Mapping[str, str],
+        key: Id,
+        prefix: str = "",
+        *,
+        always: bool = False,
     ) -> Values:
         """What the attributes mean, with those that the class gives.
 
@@ -134,7 +141,7 @@ class MjcfBuilder(Builder):
         return found
 
     def _is_written_again(
-        self, group: Group, value: Any, given: Mapping[str, str], base: Mapping[str, str], own: Mapping[str, str]
+        self, group: AttributeGroup, value: Any, given: Mapping[str, str], base: Mapping[str, str], own: Mapping[str, str]
     ) -> bool:
         """Whether printing a value gives attributes of the same meaning as those that it was read from; ``given`` are those of its own."""
         written = group.write(value, self.settings)
@@ -147,7 +154,7 @@ class MjcfBuilder(Builder):
             return True
         return bool(group.seen(again, self.settings) == group.seen(merged, self.settings))
 
-    def bad(self, element: Element, error: BadAttribute, merged: Mapping[str, str] = _NO_ATTRIBUTES) -> Refusal:
+    def bad(self, element: XmlNode, error: BadAttribute, merged: Mapping[str, str] = _NO_ATTRIBUTES) -> Refusal:
         """The refusal of an attribute that MuJoCo refuses; ``merged`` are the attributes with those that the class gives."""
         own, text = element.attributes.get(error.attribute), merged.get(error.attribute)
         found = f"is '{own}'" if own is not None else "is missing" if text is None else f"is '{text}' in its class"
@@ -160,16 +167,16 @@ class MjcfBuilder(Builder):
         self.layout.append(key)
         self.place += 1
 
-    def keep(self, element: Element, key: Id, path: str = "") -> None:
+    def keep(self, element: XmlNode, key: Id, path: str = "") -> None:
         """Everything unread of an element is kept with the element of the mechanism that it became."""
         self.add_extras(key, *unread_extras(element, path, words.NAME, verbatim))
 
-    def keep_at_root(self, element: Element, path: str = "") -> None:
+    def keep_at_root(self, element: XmlNode, path: str = "") -> None:
         """An element that the IR cannot represent is kept verbatim."""
         self.add_extras(ROOT, extra_of(element, path, self.place, words.NAME, verbatim))
         self.place += not path
 
-    def keep_rest(self, root: Element) -> None:
+    def keep_rest(self, root: XmlNode) -> None:
         """Everything unread at top level is kept."""
         for child in root.children:
             self.keep_at_root(child)
@@ -190,7 +197,7 @@ def _are_same_numbers(a: str, b: str) -> bool:
     return a == b or bool((numbers := read_numbers(a)) and numbers == read_numbers(b))
 
 
-class Scope(Struct, frozen=True):
+class BodyScope(Struct, frozen=True):
     """Where an element of a body is: the body, the <frame> in it (its number, empty for none) with its pose there, and the childclass.
 
     ``stem``: the nearest name further out, after which nameless bodies are called; so their names do not grow with depth.
@@ -203,6 +210,6 @@ class Scope(Struct, frozen=True):
     childclass: str | None = None
 
 
-def placed(pose: Pose, scope: Scope) -> Pose:
+def placed(pose: Pose, scope: BodyScope) -> Pose:
     """A pose, given in the frame around the element, seen from the body."""
     return compose(scope.pose, pose) if scope.frame else pose

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from hymeko_x.diagnostics import Refusal
-    from hymeko_x.formats.mjcf.schema import Kind
-    from hymeko_x.formats.mjcf.tree import Element
+    from hymeko_x.formats.mjcf.schema import AttributeKind
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.frontends.mjcf.rules import Rule
+    from hymeko_x.xml.tree import XmlNode
 
 _NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|0x[\da-f.]+(?:p[+-]?\d+)?|inf(?:inity)?|nan)", re.ASCII | re.IGNORECASE)
 _WHOLE = re.compile(r"[+-]?\d+", re.ASCII)
@@ -75,7 +75,7 @@ _REFERENCES: Mapping[str, tuple[tuple[str, str], ...]] = MappingProxyType(
 class Reference(Struct, frozen=True):
     """An element that names another one."""
 
-    element: Element
+    element: XmlNode
     kind: str
     name: str
 
@@ -95,7 +95,7 @@ class _Place(Struct, frozen=True):
     """
 
     attributes: frozenset[str]
-    kinds: Mapping[str, Kind]
+    kinds: Mapping[str, AttributeKind]
     filled: frozenset[str]
     required: tuple[str, ...]
     exclusive: Sequence[tuple[str, ...]]
@@ -120,7 +120,7 @@ def _place_of(path: str) -> _Place:
     )
 
 
-def check_words(root: Element) -> Words:
+def check_words(root: XmlNode) -> Words:
     """The names and references in a tree of known words. Empty numbers are taken out: to MuJoCo they are not there.
 
     Raises: Refusal (HX020, HX021, HX023, HX027, HX047) at the first element, attribute or value that MuJoCo 4.0 does not know there;
@@ -156,7 +156,7 @@ def check_words(root: Element) -> Words:
     return Words(names, references, frozenset(tags))
 
 
-def _known_children(element: Element, path: str) -> list[tuple[Element, str]]:
+def _known_children(element: XmlNode, path: str) -> list[tuple[XmlNode, str]]:
     """The elements inside with their places in the schema, the last one first."""
     known = children().get(path, {})
     below = []
@@ -172,7 +172,7 @@ def _known_children(element: Element, path: str) -> list[tuple[Element, str]]:
     return below
 
 
-def _check_attributes(element: Element, path: str, place: _Place) -> None:
+def _check_attributes(element: XmlNode, path: str, place: _Place) -> None:
     known = place.attributes
     own = element.attributes.keys()
     if not own <= known:
@@ -185,7 +185,7 @@ def _check_attributes(element: Element, path: str, place: _Place) -> None:
         raise refuse(codes.REPEATED, f"<{element.tag}> has more than one orientation: {found}", element.origin)
 
 
-def _check_values(element: Element, place: _Place) -> None:
+def _check_values(element: XmlNode, place: _Place) -> None:
     attributes = element.attributes
     if "plugin" in attributes and attributes["plugin"] in REMOVED:
         plugin = attributes["plugin"]
@@ -205,7 +205,7 @@ def _check_values(element: Element, place: _Place) -> None:
             attributes[name] = _as_decimals(text)
 
 
-def _check_needs(element: Element, place: _Place) -> None:
+def _check_needs(element: XmlNode, place: _Place) -> None:
     attributes = element.attributes
     for name in place.required:
         if name not in attributes:
@@ -220,7 +220,7 @@ _LONGEST = 1000
 """How long a whole number may be: Python reads no longer ones."""
 
 
-def _fits(text: str, kind: Kind) -> bool:
+def _fits(text: str, kind: AttributeKind) -> bool:
     if not kind.words and not text.isascii():
         return False
     if kind.words:
@@ -261,7 +261,7 @@ def _short(text: str) -> str:
     return text if len(text) <= 60 else f"{text[:60]}..."
 
 
-def _check_name(element: Element, kind: str, names: dict[tuple[str, str], Origin]) -> None:
+def _check_name(element: XmlNode, kind: str, names: dict[tuple[str, str], Origin]) -> None:
     name = element.attributes.get("name") or file_stem(element.attributes.get("file", ""))
     key = (kind, name)
     if not element.attributes.get("name") and not element.attributes.get("file"):
@@ -271,7 +271,7 @@ def _check_name(element: Element, kind: str, names: dict[tuple[str, str], Origin
     names[key] = element.origin
 
 
-def _unknown(element: Element, message: str, word: str, known: list[str], changed: str | None) -> Refusal:
+def _unknown(element: XmlNode, message: str, word: str, known: list[str], changed: str | None) -> Refusal:
     """The refusal of a word; the hint names what became of it, or what was meant."""
     from difflib import get_close_matches
 
@@ -283,7 +283,7 @@ def _unknown(element: Element, message: str, word: str, known: list[str], change
 # ---- references that have no arc -------------------------------------------------------------------------------------------------
 
 
-def _references_of(element: Element, attributes: tuple[tuple[str, str], ...]) -> list[Reference]:
+def _references_of(element: XmlNode, attributes: tuple[tuple[str, str], ...]) -> list[Reference]:
     """What the element refers to by these attributes."""
     found = [(kind, element.attributes.get(attribute)) for attribute, kind in attributes]
     return [Reference(element, kind, name) for kind, name in found if name]

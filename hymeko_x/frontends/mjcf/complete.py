@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.formats.mjcf.places import PLACE, Place
+from hymeko_x.formats.mjcf.places import PLACE, GeomPlace
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.formats.mjcf.words import NAME, compiler_has, compilers, joined, mentions, settings_of
 from hymeko_x.frontends.mjcf.colours import with_mean_colours
@@ -266,7 +266,7 @@ def _has_elements(mechanism: Mechanism, key: Id) -> bool:
 
 
 def _geom(mujoco: Any, view: ShapeView, settings: Settings) -> dict[str, Any]:
-    attributes = PLACE.write(Place(view.shape.geometry, view.pose), settings)
+    attributes = PLACE.write(GeomPlace(view.shape.geometry, view.pose), settings)
     found: dict[str, Any] = {"type": getattr(mujoco.mjtGeom, f"mjGEOM_{attributes.pop('type').upper()}")}
     found |= {name: [float(number) for number in text.split()] for name, text in attributes.items()}
     found["size"] += [0.0] * (3 - len(found["size"]))

@@ -10,14 +10,14 @@ from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Contact
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.xml.tree import XmlNode
 
 _ENDS = {"pair": ("geom", "geom1", "geom2"), "exclude": ("body", "body1", "body2")}
 
 
-def read_contacts(sections: list[Element], builder: MjcfBuilder) -> None:
+def read_contacts(sections: list[XmlNode], builder: MjcfBuilder) -> None:
     """Pairs and exclusions in order."""
     for section in sections:
         for element in section.children:
@@ -27,7 +27,7 @@ def read_contacts(sections: list[Element], builder: MjcfBuilder) -> None:
                 builder.keep_at_root(element, "contact")
 
 
-def _read_contact(element: Element, builder: MjcfBuilder) -> None:
+def _read_contact(element: XmlNode, builder: MjcfBuilder) -> None:
     kind, *ends = _ENDS[element.tag]
     key = builder.own(element, "contact", element.tag)
     base = builder.base(element, key)
@@ -37,7 +37,7 @@ def _read_contact(element: Element, builder: MjcfBuilder) -> None:
     builder.show(key)
 
 
-def find_end(element: Element, kind: str, attribute: str, builder: MjcfBuilder) -> Id:
+def find_end(element: XmlNode, kind: str, attribute: str, builder: MjcfBuilder) -> Id:
     """What an attribute refers to; the world may be called a body."""
     name = element.take(attribute) or ""
     if kind == "body" and name == "world" and ("body", "world") not in builder.named:

@@ -18,12 +18,12 @@ from hymeko_x.ir.tendons import moves_along_one
 from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, pose
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.xml.tree import XmlNode
 
 
-def read_equalities(sections: list[Element], builder: MjcfBuilder) -> None:
+def read_equalities(sections: list[XmlNode], builder: MjcfBuilder) -> None:
     """Closures and couplings in order; those of tendons and flexes are kept as extras."""
     placed: dict[Id, Pose] = {}
     for section in sections:
@@ -37,7 +37,7 @@ def read_equalities(sections: list[Element], builder: MjcfBuilder) -> None:
                 builder.keep_at_root(element, "equality")
 
 
-def _check_held(element: Element, builder: MjcfBuilder) -> None:
+def _check_held(element: XmlNode, builder: MjcfBuilder) -> None:
     """A joint that an equality holds in place moves along one coordinate."""
     name = element.attributes.get("joint1")
     if name is None:
@@ -50,7 +50,7 @@ def _check_held(element: Element, builder: MjcfBuilder) -> None:
 # ---- couplings -----------------------------------------------------------------------------------------------------------------
 
 
-def _read_coupling(element: Element, builder: MjcfBuilder) -> None:
+def _read_coupling(element: XmlNode, builder: MjcfBuilder) -> None:
     """Source: MuJoCo, equality/joint: q1 - ref1 = c0 + c1 (q2 - ref2) + ..."""
     follower, follower_role, follower_ref = _dof(element, "joint1", builder)
     leader, leader_role, leader_ref = _dof(element, "joint2", builder)
@@ -85,7 +85,7 @@ def _read_coupling(element: Element, builder: MjcfBuilder) -> None:
     builder.show(key)
 
 
-def _dof(element: Element, attribute: str, builder: MjcfBuilder) -> tuple[Id, str, float]:
+def _dof(element: XmlNode, attribute: str, builder: MjcfBuilder) -> tuple[Id, str, float]:
     """The joint, the role that names the dof in it, and the dof's reference coordinate."""
     name = element.take(attribute) or ""
     joint = builder.find(element, "joint", name)
@@ -99,7 +99,7 @@ def _dof(element: Element, attribute: str, builder: MjcfBuilder) -> tuple[Id, st
 # ---- closures ------------------------------------------------------------------------------------------------------------------
 
 
-def _read_loop(element: Element, builder: MjcfBuilder, placed: dict[Id, Pose]) -> None:
+def _read_loop(element: XmlNode, builder: MjcfBuilder, placed: dict[Id, Pose]) -> None:
     key = builder.own(element, "loop", element.tag)
     base = builder.base(element, key)
     active = element.take("active") != "false"
@@ -112,7 +112,7 @@ def _read_loop(element: Element, builder: MjcfBuilder, placed: dict[Id, Pose]) -
     builder.show(key)
 
 
-def _body_arcs(element: Element, key: Id, builder: MjcfBuilder, placed: dict[Id, Pose]) -> tuple[RobotArc, ...]:
+def _body_arcs(element: XmlNode, key: Id, builder: MjcfBuilder, placed: dict[Id, Pose]) -> tuple[RobotArc, ...]:
     """Both bodies with the closure's frame in each, where the bodies are at the reference configuration unless relpose is given."""
     first = find_end(element, "body", "body1", builder)
     second = find_end(element, "body", "body2", builder) if "body2" in element.attributes else WORLD

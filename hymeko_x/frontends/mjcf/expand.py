@@ -21,9 +21,10 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf.tree import Element, parse, parse_text, verbatim
+from hymeko_x.formats.mjcf.tree import parse, parse_text, verbatim
 from hymeko_x.formats.mjcf.words import EXPANDED_BY_MUJOCO, joined, settings_of
 from hymeko_x.source import file_stem
+from hymeko_x.xml.tree import XmlNode
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -33,12 +34,12 @@ if TYPE_CHECKING:
 # ---- <include> -----------------------------------------------------------------------------------------------------------------
 
 
-def expand_includes(root: Element, source: Source, report: Report) -> Element:
+def expand_includes(root: XmlNode, source: Source, report: Report) -> XmlNode:
     """The tree with every <include> replaced by what the file's root contains; nested ones as well.
 
     Raises: Refusal for a file that is missing, or included twice.
     """
-    seen: dict[str, Element] = {}
+    seen: dict[str, XmlNode] = {}
     stack = [root]
     while stack:
         parent = stack.pop()
@@ -50,8 +51,8 @@ def expand_includes(root: Element, source: Source, report: Report) -> Element:
     return root
 
 
-def _with_included(children: list[Element], source: Source, report: Report, seen: dict[str, Element]) -> list[Element]:
-    found: list[Element] = []
+def _with_included(children: list[XmlNode], source: Source, report: Report, seen: dict[str, XmlNode]) -> list[XmlNode]:
+    found: list[XmlNode] = []
     queue = list(reversed(children))
     while queue:
         child = queue.pop()
@@ -62,7 +63,7 @@ def _with_included(children: list[Element], source: Source, report: Report, seen
     return found
 
 
-def _included(include: Element, source: Source, report: Report, seen: dict[str, Element]) -> Element:
+def _included(include: XmlNode, source: Source, report: Report, seen: dict[str, XmlNode]) -> XmlNode:
     path, inner = included_source(include, source)
     if path in seen:
         first = seen[path].origin
@@ -71,7 +72,7 @@ def _included(include: Element, source: Source, report: Report, seen: dict[str, 
     return parse(inner, report)
 
 
-def included_source(include: Element, source: Source) -> tuple[str, Source]:
+def included_source(include: XmlNode, source: Source) -> tuple[str, Source]:
     """The path of the file that an <include> names, and the file. Raises: Refusal when it names none, or one that cannot be read."""
     uri = include.attributes.get("file")
     if not uri:
@@ -115,7 +116,7 @@ MOST_BYTES = 2**31
 """What the process may use."""
 
 
-def expand_by_mujoco(root: Element, source: Source, report: Report) -> Element:
+def expand_by_mujoco(root: XmlNode, source: Source, report: Report) -> XmlNode:
     """The tree as MuJoCo writes it when something in it has to be expanded; else the tree as it is.
 
     Raises: Refusal when MuJoCo refuses the file, or is not there; HX007 when the expansion exceeds a limit.
@@ -140,7 +141,7 @@ def expand_by_mujoco(root: Element, source: Source, report: Report) -> Element:
     return expanded
 
 
-def _give_origins(expanded: Element, root: Element, found: Element) -> None:
+def _give_origins(expanded: XmlNode, root: XmlNode, found: XmlNode) -> None:
     """Let what the author wrote be where it was written, and what was made of another element be where that is."""
     written = {(element.tag, element.attributes.get("name")): element for element in reversed([*root.walk()])}
     for element in expanded.walk():
@@ -150,7 +151,7 @@ def _give_origins(expanded: Element, root: Element, found: Element) -> None:
         element.file, element.line = (known or inherited).origin.file, (known or inherited).origin.line
 
 
-def _check_size(root: Element) -> None:
+def _check_size(root: XmlNode) -> None:
     """Refuse what would fill the memory: copies of copies of copies.
 
     Raises: Refusal HX007.
@@ -168,7 +169,7 @@ def _check_size(root: Element) -> None:
         stack.extend((child, copies) for child in element.children)
 
 
-def _count(element: Element) -> int:
+def _count(element: XmlNode) -> int:
     """How often an element's content is made; 1 where the text is no number, which MuJoCo will refuse."""
     product = 1
     for word in element.attributes.get("count", "1").split()[:3]:
@@ -228,7 +229,7 @@ class FlatModel(Struct):
     written: dict[str, str] = field(default_factory=dict)
     has_keyframes: bool = False
 
-    def restore(self, root: Element) -> None:
+    def restore(self, root: XmlNode) -> None:
         """Give the files in an expanded model their own names again."""
         foreign = self.uris.keys() - self.written.keys()
         in_full = bool(foreign) and (self.settings.strip_path or self.settings.mesh_folder[:1] == "/")
@@ -237,7 +238,7 @@ class FlatModel(Struct):
                 if text in self.uris and name.startswith("file"):
                     element.attributes[name] = self.uris[text] if in_full else self._own_name(element.tag, text)
         if self.folders and not in_full:
-            root.children.insert(0, Element("compiler", dict(self.folders)))
+            root.children.insert(0, XmlNode("compiler", dict(self.folders)))
 
     def _own_name(self, tag: str, name: str) -> str:
         if name in self.written:
@@ -253,7 +254,7 @@ class FlatModel(Struct):
         return message
 
 
-def flatten(root: Element, source: Source, report: Report) -> FlatModel:
+def flatten(root: XmlNode, source: Source, report: Report) -> FlatModel:
     """Give every file of a model, and of all models that it attaches, a name without a folder, in place.
 
     Raises: Refusal for a sub-model that is missing, unreadable, or that attaches itself.
@@ -261,7 +262,7 @@ def flatten(root: Element, source: Source, report: Report) -> FlatModel:
     compilers = [child.attributes for child in root.children if child.tag == "compiler"]
     folders = {name: text for attributes in compilers for name, text in attributes.items() if name in _FOLDERS}
     flat = FlatModel(settings_of(compilers), folders)
-    waiting: list[tuple[Element, str, tuple[str, ...]]] = [(root, "", ())]
+    waiting: list[tuple[XmlNode, str, tuple[str, ...]]] = [(root, "", ())]
     while waiting:
         model, folder, outer = waiting.pop()
         for element, uri in _flattened(model, folder, flat, source, own=not outer):
@@ -275,14 +276,14 @@ def flatten(root: Element, source: Source, report: Report) -> FlatModel:
     return flat
 
 
-def _flattened(model: Element, folder: str, flat: FlatModel, source: Source, *, own: bool) -> list[tuple[Element, str]]:
+def _flattened(model: XmlNode, folder: str, flat: FlatModel, source: Source, *, own: bool) -> list[tuple[XmlNode, str]]:
     """Rename the files of one model; returns the <model> elements in it with their paths."""
     compilers = [child.attributes for child in model.children if child.tag == "compiler"]
     settings = settings_of(compilers)
     for attributes in compilers:
         for name in _FOLDERS:
             attributes.pop(name, None)
-    models: list[tuple[Element, str]] = []
+    models: list[tuple[XmlNode, str]] = []
     for element in model.walk():
         if element.tag == "model" and "file" in element.attributes:
             uri = posixpath.normpath(posixpath.join(folder, element.attributes["file"].replace("\\", "/")))
@@ -293,7 +294,7 @@ def _flattened(model: Element, folder: str, flat: FlatModel, source: Source, *, 
     return models
 
 
-def _rename_files(element: Element, folder: str, settings: Settings, flat: FlatModel, source: Source, *, own: bool) -> None:
+def _rename_files(element: XmlNode, folder: str, settings: Settings, flat: FlatModel, source: Source, *, own: bool) -> None:
     below = settings.texture_folder if element.tag == "texture" else settings.mesh_folder
     for name in [name for name in element.attributes if name.startswith("file")]:
         text = element.attributes[name]
@@ -318,7 +319,7 @@ def _token(uri: str, flat: FlatModel) -> str:
     return token
 
 
-def _opened(element: Element, uri: str, source: Source, report: Report) -> Element:
+def _opened(element: XmlNode, uri: str, source: Source, report: Report) -> XmlNode:
     path = source.files.find(uri)
     if path is None:
         raise refuse(codes.CANNOT_READ, f"the model '{uri}' was not found", element.origin)

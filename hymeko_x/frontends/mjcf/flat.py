@@ -22,8 +22,8 @@ from hymeko_x.source import Source
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.ir.mechanism import Extra, Mechanism
+    from hymeko_x.xml.tree import XmlNode
 
 
 def flatten(mechanism: Mechanism, write: Callable[[Mechanism], bytes]) -> Mechanism:
@@ -76,12 +76,12 @@ def _sections(own: tuple[Extra, ...], flat: tuple[Extra, ...]) -> tuple[Extra, .
     return tuple([replace(extra, text=text) if " class=" in extra.text else extra for extra, text in zip(kept, texts, strict=True)])
 
 
-def _without_classes(root: Element) -> str:
+def _without_classes(root: XmlNode) -> str:
     """The document with every inherited attribute at its element. Not recursive."""
     classes = Classes([child for child in root.children if child.tag == "default"])
     root.children = [child for child in root.children if child.tag != "default"]
     sections = [child for child in root.children if child.tag not in (*KEPT_SECTIONS, COMMENT)]
-    stack: list[tuple[Element, str, str | None]] = [(child, section.tag, None) for section in sections for child in section.children]
+    stack: list[tuple[XmlNode, str, str | None]] = [(child, section.tag, None) for section in sections for child in section.children]
     while stack:
         element, place, childclass = stack.pop()
         section, path = place.partition("/")[0], f"{place}/{element.tag}"

@@ -14,14 +14,14 @@ from hymeko_x.ir.parts import UNLIMITED, Dof, DofKind, Joint, Limits
 from hymeko_x.ir.values import Z, apply, rotate
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.frontends.mjcf.builder import MjcfBuilder, Scope, Values
+    from hymeko_x.frontends.mjcf.builder import BodyScope, MjcfBuilder, Values
     from hymeko_x.ir.values import Pose
+    from hymeko_x.xml.tree import XmlNode
 
 _VELOCITIES = {DofKind.HINGE: 1, DofKind.SLIDE: 1, DofKind.BALL: 3, DofKind.FREE: 6}
 
 
-def read_joints(found: list[tuple[Element, Scope]], body: Id, parent: Id, pose: Pose, builder: MjcfBuilder) -> None:
+def read_joints(found: list[tuple[XmlNode, BodyScope]], body: Id, parent: Id, pose: Pose, builder: MjcfBuilder) -> None:
     """The edge from the parent to the body; without joints it is a fixed one."""
     key = _joint_id(found, body, builder)
     dofs = []
@@ -39,7 +39,7 @@ def read_joints(found: list[tuple[Element, Scope]], body: Id, parent: Id, pose: 
     builder.show(key)
 
 
-def _joint_id(found: list[tuple[Element, Scope]], body: Id, builder: MjcfBuilder) -> Id:
+def _joint_id(found: list[tuple[XmlNode, BodyScope]], body: Id, builder: MjcfBuilder) -> Id:
     if len(found) == 1 and (name := found[0][0].attributes.get("name")):
         return Id("joint", name)
     key = builder.names.take("joint", body.name)
@@ -48,7 +48,7 @@ def _joint_id(found: list[tuple[Element, Scope]], body: Id, builder: MjcfBuilder
     return key
 
 
-def _read_dof(element: Element, scope: Scope, key: Id, prefix: str, builder: MjcfBuilder) -> Dof:
+def _read_dof(element: XmlNode, scope: BodyScope, key: Id, prefix: str, builder: MjcfBuilder) -> Dof:
     name = element.take("name") or None
     if name:
         builder.register(element, "joint", name, key)
@@ -66,11 +66,11 @@ def _named(dof: Dof, name: str) -> Dof:
     return replace(dof, name=name)
 
 
-def _free(element: Element, key: Id, prefix: str, builder: MjcfBuilder) -> Dof:
+def _free(element: XmlNode, key: Id, prefix: str, builder: MjcfBuilder) -> Dof:
     return Dof(DofKind.FREE, Z)
 
 
-def _typed(element: Element, scope: Scope, key: Id, prefix: str, builder: MjcfBuilder) -> Dof:
+def _typed(element: XmlNode, scope: BodyScope, key: Id, prefix: str, builder: MjcfBuilder) -> Dof:
     base = builder.base(element, key, scope.childclass)
     found = builder.values(element, JOINT, base, key, prefix, always=bool(scope.frame))
     if found["type"] is DofKind.FREE:
@@ -103,7 +103,7 @@ def _limits(found: Values) -> Limits:
     return Limits(low, high, effort=effort)
 
 
-def _check_dofs(dofs: list[Dof], found: list[tuple[Element, Scope]], parent: Id) -> None:
+def _check_dofs(dofs: list[Dof], found: list[tuple[XmlNode, BodyScope]], parent: Id) -> None:
     """What MuJoCo refuses, which takes several dofs or a free one."""
     if not dofs or (len(dofs) == 1 and dofs[0].kind is not DofKind.FREE):
         return

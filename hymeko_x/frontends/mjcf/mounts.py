@@ -8,30 +8,30 @@ from hymeko_x.formats.mjcf.codec import parameter_value
 from hymeko_x.formats.mjcf.notations import frame_of
 from hymeko_x.formats.mjcf.places import CAMERA, LIGHT, SITE
 from hymeko_x.formats.mjcf.words import PLAIN_ATTRIBUTES
-from hymeko_x.frontends.mjcf.builder import Scope, placed
+from hymeko_x.frontends.mjcf.builder import BodyScope, placed
 from hymeko_x.ir.mechanism import mount_edge
 from hymeko_x.ir.parts import Camera, Frame, Light
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.formats.mjcf.codec import Group
-    from hymeko_x.formats.mjcf.tree import Element
+    from hymeko_x.formats.mjcf.codec import AttributeGroup
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder, Values
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Parameters
+    from hymeko_x.xml.tree import XmlNode
 
     Names = tuple[str, ...]
 
 
-def read_site(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
+def read_site(element: XmlNode, scope: BodyScope, builder: MjcfBuilder) -> None:
     """A named pose on a body."""
     key, found, _ = _read(element, scope, "frame", SITE, builder)
     builder.vertices[key] = Frame(found["size"])
     builder.keep(element, key)
 
 
-def read_camera(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
+def read_camera(element: XmlNode, scope: BodyScope, builder: MjcfBuilder) -> None:
     """A camera; the body that it follows is among its parameters."""
     key, found, base = _read(element, scope, "camera", CAMERA, builder)
     width, height = found["resolution"] or (0.0, 0.0)
@@ -40,7 +40,7 @@ def read_camera(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
     builder.keep(element, key)
 
 
-def read_light(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
+def read_light(element: XmlNode, scope: BodyScope, builder: MjcfBuilder) -> None:
     """A light."""
     key, found, base = _read(element, scope, "light", LIGHT, builder)
     x, y, z = found["diffuse"] or (0.0, 0.0, 0.0)
@@ -48,7 +48,7 @@ def read_light(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
     builder.keep(element, key)
 
 
-def take_parameters(element: Element, base: Mapping[str, str], resolved: Names = (), law: Names = ()) -> Parameters:
+def take_parameters(element: XmlNode, base: Mapping[str, str], resolved: Names = (), law: Names = ()) -> Parameters:
     """Every unread attribute that differs from the class's, as a parameter.
 
     Those in ``resolved`` and ``law`` are parameters even where the class gives them; the former come first, of the latter come last
@@ -66,7 +66,7 @@ def take_parameters(element: Element, base: Mapping[str, str], resolved: Names =
 
 
 def _read(
-    element: Element, scope: Scope, kind: str, groups: tuple[Group, ...], builder: MjcfBuilder
+    element: XmlNode, scope: BodyScope, kind: str, groups: tuple[AttributeGroup, ...], builder: MjcfBuilder
 ) -> tuple[Id, Values, Mapping[str, str]]:
     key = builder.own(element, kind, f"{scope.body.name}/{element.tag}")
     base = builder.base(element, key, scope.childclass)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.outline import TextFile
     from hymeko_x.source import Source
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
 _CALLED_AS_FILE = frozenset({"mesh", "texture", "hfield", "skin"})
@@ -43,9 +43,9 @@ def outline(source: Source, report: Report) -> Outline:
     return Outline(root, files, source.name, STYLE)
 
 
-def _included(node: Node, source: Source, report: Report, files: dict[str, TextFile]) -> list[Node]:
+def _included(node: XmlNode, source: Source, report: Report, files: dict[str, TextFile]) -> list[XmlNode]:
     """What an element stands for: itself, or the content of the file that it includes, nested includes as well."""
-    found: list[Node] = []
+    found: list[XmlNode] = []
     queue = [node]
     while queue:
         child = queue.pop()

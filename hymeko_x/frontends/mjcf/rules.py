@@ -13,12 +13,12 @@ from hymeko_x.formats.mjcf.tree import COMMENT
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from hymeko_x.formats.mjcf.tree import Element
+    from hymeko_x.xml.tree import XmlNode
 
-    Rule = Callable[[Element], str | None]
+    Rule = Callable[[XmlNode], str | None]
 
 
-def _numbers(element: Element, name: str) -> list[float]:
+def _numbers(element: XmlNode, name: str) -> list[float]:
     """The numbers of an attribute; none where it is not there. Whole ones come before spellings that only MuJoCo knows."""
     try:
         return [float(word) for word in element.attributes.get(name, "").split()]
@@ -29,7 +29,7 @@ def _numbers(element: Element, name: str) -> list[float]:
 def _less_than(least: float, *names: str) -> Rule:
     """A rule: none of these attributes is smaller."""
 
-    def rule(element: Element) -> str | None:
+    def rule(element: XmlNode) -> str | None:
         bad = next((name for name in names if any(number < least for number in _numbers(element, name))), None)
         return None if bad is None else f"<{element.tag} {bad}> is '{element.attributes[bad]}', expected at least {least:g}"
 
@@ -39,7 +39,7 @@ def _less_than(least: float, *names: str) -> Rule:
 def _at_most(most: float, *names: str) -> Rule:
     """A rule: none of these attributes is greater."""
 
-    def rule(element: Element) -> str | None:
+    def rule(element: XmlNode) -> str | None:
         bad = next((name for name in names if any(number > most for number in _numbers(element, name))), None)
         return None if bad is None else f"<{element.tag} {bad}> is '{element.attributes[bad]}', expected at most {most:g}"
 
@@ -49,7 +49,7 @@ def _at_most(most: float, *names: str) -> Rule:
 def _positive(*names: str) -> Rule:
     """A rule: these attributes are greater than zero."""
 
-    def rule(element: Element) -> str | None:
+    def rule(element: XmlNode) -> str | None:
         bad = next((name for name in names if any(number <= 0.0 for number in _numbers(element, name))), None)
         return None if bad is None else f"<{element.tag} {bad}> is '{element.attributes[bad]}', expected more than 0"
 
@@ -59,7 +59,7 @@ def _positive(*names: str) -> Rule:
 def _together(*names: str) -> Rule:
     """A rule: an element has all of these attributes or none."""
 
-    def rule(element: Element) -> str | None:
+    def rule(element: XmlNode) -> str | None:
         missing = [name for name in names if name not in element.attributes]
         return None if len(missing) in (0, len(names)) else f"<{element.tag}> needs {' and '.join(names)} together"
 
@@ -69,7 +69,7 @@ def _together(*names: str) -> Rule:
 def _one_of(*names: str) -> Rule:
     """A rule: an element has one of these attributes."""
 
-    def rule(element: Element) -> str | None:
+    def rule(element: XmlNode) -> str | None:
         return None if any(name in element.attributes for name in names) else f"<{element.tag}> needs {' or '.join(names)}"
 
     return rule
@@ -78,7 +78,7 @@ def _one_of(*names: str) -> Rule:
 def _only_with(attribute: str, *names: str) -> Rule:
     """A rule: these attributes stand beside that one."""
 
-    def rule(element: Element) -> str | None:
+    def rule(element: XmlNode) -> str | None:
         bad = next((name for name in names if name in element.attributes), None)
         alone = bad is not None and attribute not in element.attributes
         return f"<{element.tag}> has {bad}, which stands beside {attribute} only" if alone else None
@@ -89,7 +89,7 @@ def _only_with(attribute: str, *names: str) -> Rule:
 def _unique(*tags: str) -> Rule:
     """A rule: there is at most one of each of these elements inside, of all elements where none is named."""
 
-    def rule(element: Element) -> str | None:
+    def rule(element: XmlNode) -> str | None:
         found = [
             child.tag for child in element.children if child.tag != COMMENT and (child.tag in tags if tags else child.tag != "default")
         ]
@@ -99,24 +99,24 @@ def _unique(*tags: str) -> Rule:
     return rule
 
 
-def _eulerseq(element: Element) -> str | None:
+def _eulerseq(element: XmlNode) -> str | None:
     text = element.attributes.get("eulerseq", "xyz")
     good = len(text) == 3 and set(text) <= set("xyzXYZ")
     return None if good else f"<compiler eulerseq> is '{text}', expected three letters of x, y, z, X, Y, Z"
 
 
-def _frame_scale(element: Element) -> str | None:
+def _frame_scale(element: XmlNode) -> str | None:
     scale = _numbers(element, "scale")
     if len(set(scale)) > 1 and element.attributes.get("scaling") != "geometry":
         return '<frame scale> has different factors, which needs scaling="geometry"'
     return None
 
 
-def _rows_and_columns(element: Element) -> tuple[int, int]:
+def _rows_and_columns(element: XmlNode) -> tuple[int, int]:
     return int(element.attributes.get("nrow", "0")), int(element.attributes.get("ncol", "0"))
 
 
-def _hfield(element: Element) -> str | None:
+def _hfield(element: XmlNode) -> str | None:
     rows, columns = _rows_and_columns(element)
     heights = element.attributes.get("elevation", "").split()
     if "file" not in element.attributes and (rows < 2 or columns < 2):
@@ -126,12 +126,12 @@ def _hfield(element: Element) -> str | None:
     return None
 
 
-def _contact_size(element: Element) -> str | None:
+def _contact_size(element: XmlNode) -> str | None:
     text = element.attributes.get("condim", "3")
     return None if int(text) in (1, 3, 4, 6) else f"<{element.tag} condim> is '{text}', expected 1, 3, 4 or 6"
 
 
-def _layers(element: Element) -> str | None:
+def _layers(element: XmlNode) -> str | None:
     layers = [child for child in element.children if child.tag == "layer"]
     if layers and "texture" in element.attributes:
         return "<material> has a texture and layers, of which it may have one"
@@ -142,7 +142,7 @@ def _layers(element: Element) -> str | None:
 _ROLES = ("rgb", "occlusion", "roughness", "metallic", "opacity", "emissive", "normal", "orm", "rgba", "user")
 
 
-def _numeric(element: Element) -> str | None:
+def _numeric(element: XmlNode) -> str | None:
     room, count = int(element.attributes.get("size", "-1")), len(element.attributes.get("data", "").split())
     if "size" in element.attributes and room < 1:
         return f"<numeric size> is '{room}', expected more than 0"
@@ -151,32 +151,32 @@ def _numeric(element: Element) -> str | None:
     return None if room < 0 or count <= room else f"<numeric data> has {count} numbers, and room for {room}"
 
 
-def _filled(element: Element) -> str | None:
+def _filled(element: XmlNode) -> str | None:
     return None if element.attributes.get("data") else "<text> needs data that is not empty"
 
 
-def _inhabited(element: Element) -> str | None:
+def _inhabited(element: XmlNode) -> str | None:
     return None if any(child.tag == "element" for child in element.children) else "<tuple> is empty"
 
 
-def _gains(element: Element) -> str | None:
+def _gains(element: XmlNode) -> str | None:
     both = "kv" in element.attributes and "dampratio" in element.attributes
     return f"<{element.tag}> has kv and dampratio, of which it may have one" if both else None
 
 
-def _springdamper(element: Element) -> str | None:
+def _springdamper(element: XmlNode) -> str | None:
     found = _numbers(element, "springdamper")
     bad = any(found) and min(found) <= 0.0
     return f"<joint springdamper> is '{element.attributes['springdamper']}', expected two numbers more than 0" if bad else None
 
 
-def _springlength(element: Element) -> str | None:
+def _springlength(element: XmlNode) -> str | None:
     found = _numbers(element, "springlength")
     bad = len(found) == 2 and found[0] > found[1]
     return f"<{element.tag} springlength> is '{element.attributes['springlength']}', expected the lower number first" if bad else None
 
 
-def _skin(element: Element) -> str | None:
+def _skin(element: XmlNode) -> str | None:
     points = len(element.attributes.get("vertex", "").split()) // 3
     faces = _numbers(element, "face")
     bad = "file" not in element.attributes and bool(faces) and not (min(faces) >= 0.0 and max(faces) < points)
@@ -186,26 +186,26 @@ def _skin(element: Element) -> str | None:
 _DIMENSIONS = MappingProxyType({"axis": "3", "quaternion": "4"})
 
 
-def _datatype(element: Element) -> str | None:
+def _datatype(element: XmlNode) -> str | None:
     kind = element.attributes.get("datatype", "")
     wanted = _DIMENSIONS.get(kind)
     good = wanted is None or element.attributes.get("dim") == wanted
     return None if good else f"<user datatype> is '{kind}', which needs dim=\"{wanted}\""
 
 
-def _attached(element: Element) -> str | None:
+def _attached(element: XmlNode) -> str | None:
     sites, bodies = ("site1" in element.attributes, "site2" in element.attributes), "body1" in element.attributes
     if all(sites) or (bodies and (element.tag == "weld" or "anchor" in element.attributes)):
         return None
     return f"<{element.tag}> needs site1 and site2, or body1{' and anchor' if element.tag == 'connect' else ''}"
 
 
-def _hull(element: Element) -> str | None:
+def _hull(element: XmlNode) -> str | None:
     text = element.attributes.get("maxhullvert", "-1")
     return None if int(text) < 0 or int(text) > 3 else f"<mesh maxhullvert> is '{text}', expected more than 3"
 
 
-def _direct_current(element: Element) -> str | None:
+def _direct_current(element: XmlNode) -> str | None:
     """What no class can make up for: a constant or resistance of zero that no nominal values give, half of a thermal model."""
     constants, resistance, thermal = (_numbers(element, name) for name in ("motorconst", "resistance", "thermal"))
     own = element.attributes
@@ -280,7 +280,7 @@ _MOST_STEPS = 1_000
 _MOST_HEIGHTS = 100_000_000
 
 
-def _grid(element: Element) -> str | None:
+def _grid(element: XmlNode) -> str | None:
     rows, columns = _rows_and_columns(element)
     if rows * columns <= _MOST_HEIGHTS:
         return None
@@ -297,7 +297,7 @@ _LIMITS: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
 """Counts for which MuJoCo has no limit: with a few letters a file would make it fill the memory, or compute for hours."""
 
 
-def complaint(element: Element, rules: tuple[Rule, ...]) -> str | None:
+def complaint(element: XmlNode, rules: tuple[Rule, ...]) -> str | None:
     """What MuJoCo would refuse in this element by these rules; None when it is fine."""
     for rule in rules:
         found = rule(element)

@@ -14,12 +14,12 @@ from hymeko_x.ir.parts import Camera, Sense, Sensor
 from hymeko_x.ir.tendons import moves_along_one
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.xml.tree import XmlNode
 
 
-def read_sensors(sections: list[Element], builder: MjcfBuilder) -> None:
+def read_sensors(sections: list[XmlNode], builder: MjcfBuilder) -> None:
     """Sensors in order, each with the edge to what it measures."""
     for section in sections:
         for element in section.children:
@@ -29,7 +29,7 @@ def read_sensors(sections: list[Element], builder: MjcfBuilder) -> None:
                 _read_sensor(element, builder)
 
 
-def _read_sensor(element: Element, builder: MjcfBuilder) -> None:
+def _read_sensor(element: XmlNode, builder: MjcfBuilder) -> None:
     key = builder.own(element, "sensor", element.tag)
     arcs: list[RobotArc] = []
     for word in ("objname", "refname"):
@@ -52,7 +52,7 @@ def _read_sensor(element: Element, builder: MjcfBuilder) -> None:
 _SINGLE = ("jointpos", "jointvel", "jointactuatorfrc", "jointlimitpos", "jointlimitvel", "jointlimitfrc")
 
 
-def _check_target(element: Element, arcs: list[RobotArc], builder: MjcfBuilder) -> None:
+def _check_target(element: XmlNode, arcs: list[RobotArc], builder: MjcfBuilder) -> None:
     """Some sensors need a joint that moves along one coordinate, others a ball, others a camera with an image."""
     for arc in arcs:
         camera = builder.vertices.get(arc.target)
@@ -68,7 +68,7 @@ def _check_target(element: Element, arcs: list[RobotArc], builder: MjcfBuilder) 
         )
 
 
-def _arc(element: Element, kind: str, word: str, role: str, builder: MjcfBuilder) -> RobotArc:
+def _arc(element: XmlNode, kind: str, word: str, role: str, builder: MjcfBuilder) -> RobotArc:
     name = element.attributes[word]
     target: Id = find_end(element, kind, word, builder)
     if target.kind == "joint":

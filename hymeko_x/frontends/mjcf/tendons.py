@@ -18,13 +18,13 @@ from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, SPATIAL, WRAP, wrong_path
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Parameters
+    from hymeko_x.xml.tree import XmlNode
 
 
-def read_tendons(sections: list[Element], builder: MjcfBuilder) -> None:
+def read_tendons(sections: list[XmlNode], builder: MjcfBuilder) -> None:
     """Spatial and fixed tendons in order."""
     for section in sections:
         for element in section.children:
@@ -34,7 +34,7 @@ def read_tendons(sections: list[Element], builder: MjcfBuilder) -> None:
                 builder.keep_at_root(element, "tendon")
 
 
-def _read_tendon(element: Element, builder: MjcfBuilder) -> None:
+def _read_tendon(element: XmlNode, builder: MjcfBuilder) -> None:
     key = builder.own(element, "tendon", "tendon")
     base = builder.base(element, key)
     found = builder.values(element, TENDON, base, key)
@@ -61,7 +61,7 @@ def _read_tendon(element: Element, builder: MjcfBuilder) -> None:
     builder.show(key)
 
 
-def _take_parameters(element: Element, base: Mapping[str, str]) -> Parameters:
+def _take_parameters(element: XmlNode, base: Mapping[str, str]) -> Parameters:
     """Other parameters of a tendon's length and forces, also where its class gives them."""
     merged = merge(base, element.attributes)
     found = tuple((name, parameter_value(name, merged[name])) for name in TENDON_PARAMETERS if name in merged)
@@ -70,14 +70,14 @@ def _take_parameters(element: Element, base: Mapping[str, str]) -> Parameters:
     return found
 
 
-def _check_path(element: Element, tendon: Tendon, arcs: list[RobotArc], builder: MjcfBuilder) -> None:
+def _check_path(element: XmlNode, tendon: Tendon, arcs: list[RobotArc], builder: MjcfBuilder) -> None:
     """Raises: Refusal for a path that MuJoCo refuses."""
     wrong = wrong_path(tendon, arcs, builder.edges)
     if wrong is not None:
         raise refuse(codes.BAD_NUMBER, f"the path of <{element.tag}> {wrong}", element.origin)
 
 
-def _path(step: Element, tendon: Id, builder: MjcfBuilder) -> list[RobotArc]:
+def _path(step: XmlNode, tendon: Id, builder: MjcfBuilder) -> list[RobotArc]:
     """One step of the path: one arc, and one more for the side of a wrapping shape."""
     if step.tag == PULLEY:
         divisor = _number(step, "divisor", builder)
@@ -95,7 +95,7 @@ def _path(step: Element, tendon: Id, builder: MjcfBuilder) -> list[RobotArc]:
     return arcs if side is None else [*arcs, Arc(builder.find(step, "site", side), 0, None, SIDE)]
 
 
-def _number(step: Element, name: str, builder: MjcfBuilder) -> float:
+def _number(step: XmlNode, name: str, builder: MjcfBuilder) -> float:
     try:
         found = numbers_of(step.attributes, name, 1, 1)
     except BadAttribute as error:

@@ -11,7 +11,7 @@ from hymeko_x import codes, formats
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
-from hymeko_x.frontends.sdf.builder import Model, SdfBuilder, TextsUnread
+from hymeko_x.frontends.sdf.builder import SdfBuilder, SdfModel, TextsUnread
 from hymeko_x.frontends.sdf.checks import check_models, check_numbers
 from hymeko_x.frontends.sdf.gearboxes import read_gearboxes
 from hymeko_x.frontends.sdf.include import expand_includes
@@ -41,18 +41,18 @@ from hymeko_x.xml.unread import extras_around
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.source import Source
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
 def read(source: Source, report: Report) -> Reading:
-    """The mechanism that an SDF file describes, and the residue that it carries.
+    """The mechanism that an SDF file describes, and the residue that it contains.
 
     Raises: Refusal with HX004 (not XML), HX006 (the root is not <sdf>), HX007 (too large), HX008 (entities).
     """
     document = modernised(parse(source, report), report)
     root = document.root
     _check_root(root)
-    carried = [node.take_whole_text() for node in root.take_children(words.RESIDUE)]
+    residue = [node.take_whole_text() for node in root.take_children(words.RESIDUE)]
     version = _read_version(root, report)
     included = expand_includes(root, source, document.data, words.minor(version), report)
     builder = SdfBuilder(report=report, unread=TextsUnread(root, included.texts, report), versions=included.versions)
@@ -63,15 +63,15 @@ def read(source: Source, report: Report) -> Reading:
         if child.taken:
             check_numbers(builder.unread.close(child), builder)
     mechanism = builder.finish(name, extras_around(document, words.FORMAT), source.name, version)
-    return Reading(with_world_link_as_world(mechanism), "".join(carried))
+    return Reading(with_world_link_as_world(mechanism), "".join(residue))
 
 
-def _check_root(root: Node) -> None:
+def _check_root(root: XmlNode) -> None:
     if root.tag != "sdf":
         raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <sdf>", root.origin, hint=formats.root_hint(root.tag))
 
 
-def _read_version(root: Node, report: Report) -> str:
+def _read_version(root: XmlNode, report: Report) -> str:
     version = root.take("version")
     if version in words.VERSIONS:
         return version
@@ -80,7 +80,7 @@ def _read_version(root: Node, report: Report) -> str:
     return words.DEFAULT_VERSION
 
 
-def _take_world(root: Node, report: Report) -> Node | None:
+def _take_world(root: XmlNode, report: Report) -> XmlNode | None:
     """The first <world>; others stay as they are written."""
     world = root.take_child("world")
     if root.has("world"):
@@ -88,7 +88,7 @@ def _take_world(root: Node, report: Report) -> Node | None:
     return world
 
 
-def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBuilder) -> str:
+def _read_models(root: XmlNode, world: XmlNode | None, source: Source, builder: SdfBuilder) -> str:
     """Everything in the world, or in the model of the file. Returns the name of the mechanism."""
     place = root if world is None else world
     shared = check_models(place, builder.report)
@@ -97,7 +97,7 @@ def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBui
     if named is not None:
         builder.note(ROOT, notations.WORLD, named)
     is_alone = len(tops) == 1
-    around = Model(place, words.WORLD_SCOPE if is_alone else "", WORLD)
+    around = SdfModel(place, words.WORLD_SCOPE if is_alone else "", WORLD)
     if len(tops) != 1:
         builder.note(ROOT, notations.SEVERAL, True)
     models = collect_models(tops, builder, is_alone=is_alone)
@@ -130,14 +130,14 @@ def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBui
     return own or source.stem
 
 
-def _report_no_model(root: Node, world: Node | None, report: Report) -> None:
+def _report_no_model(root: XmlNode, world: XmlNode | None, report: Report) -> None:
     """A scene without models is odd; a file without anything is wrong, and libsdformat refuses it."""
     is_scene = world is not None or any(child.tag in ("light", "actor") for child in root.children)
     tell = report.warn if is_scene else report.error
     tell(codes.MISSING_PART, "the file has no model; the result has no bodies", root.origin)
 
 
-def _read_content(models: list[Model], builder: SdfBuilder) -> None:
+def _read_content(models: list[SdfModel], builder: SdfBuilder) -> None:
     """Links of all models first: a joint may lead into another model."""
     for model in models:
         for node in model.node.children:

@@ -22,32 +22,32 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.diagnostics import Code, Report
-    from hymeko_x.formats.sdf.values import Codec, Field
+    from hymeko_x.formats.sdf.values import Codec, ValueField
     from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.ir.values import Vec3
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
 class TextsUnread(Unread):
     """What is unread in a tree whose elements come from several files: their texts are looked up by the file of the element."""
 
-    def __init__(self, root: Node, texts: Mapping[str, bytes], report: Report) -> None:
+    def __init__(self, root: XmlNode, texts: Mapping[str, bytes], report: Report) -> None:
         super().__init__(root, texts[root.file], words.FORMAT, report)
         self._texts = texts
 
-    def verbatim(self, node: Node) -> str:
+    def verbatim(self, node: XmlNode) -> str:
         """The element as its own file has it."""
         self._data = self._texts[node.file]
         return super().verbatim(node)
 
 
-class Model(Struct, frozen=True):
+class SdfModel(Struct, frozen=True):
     """A <model>: its node, the scope of the names in it, the frame that it is, and the model around it (None = at top level)."""
 
-    node: Node
+    node: XmlNode
     scope: str
     frame: Id
-    around: Model | None = None
+    around: SdfModel | None = None
     is_static: bool = False
 
 
@@ -63,28 +63,28 @@ class SdfBuilder(Builder):
     joints: dict[str, Id] = field(default_factory=dict)
     attached: dict[Id, Id] = field(default_factory=dict)
     moves_with: dict[Id, Id | None] = field(default_factory=dict)
-    gearboxes: list[tuple[Node, Model]] = field(default_factory=list)
+    gearboxes: list[tuple[XmlNode, SdfModel]] = field(default_factory=list)
     left: set[Id] = field(default_factory=set)
     bad_numbers: set[int] = field(default_factory=set)
     written: dict[Id, dict[str, str]] = field(default_factory=dict)
 
     # ---- diagnostics -----------------------------------------------------------------------------------------------------
 
-    def warn(self, code: Code, node: Node, message: str) -> None:
+    def warn(self, code: Code, node: XmlNode, message: str) -> None:
         """Report something odd about a node, and how it is read."""
         self.report.warn(code, message, node.origin, element=node.element)
 
-    def error(self, code: Code, node: Node, message: str) -> None:
+    def error(self, code: Code, node: XmlNode, message: str) -> None:
         """Report something wrong about a node, and what is used instead."""
         self.report.error(code, message, node.origin, element=node.element)
 
-    def version_of(self, node: Node) -> int:
+    def version_of(self, node: XmlNode) -> int:
         """The minor version of SDF in which the file of a node is written."""
         return self.versions[node.file]
 
     # ---- names -----------------------------------------------------------------------------------------------------------
 
-    def own(self, node: Node, kind: str, scope: str) -> Id:
+    def own(self, node: XmlNode, kind: str, scope: str) -> Id:
         """The id of a named child of a model, from which its unread content belongs to it; a missing or repeated name is reported."""
         name = node.take("name")
         if not name:
@@ -109,7 +109,7 @@ class SdfBuilder(Builder):
 
     # ---- values ----------------------------------------------------------------------------------------------------------
 
-    def value(self, node: Node, field: Field, key: Id, prefix: str = "") -> Any:
+    def value(self, node: XmlNode, field: ValueField, key: Id, prefix: str = "") -> Any:
         """The value of a field below a node; where it would not be written like this again, its text is noted under ``prefix`` and path."""
         *steps, last = field.path.split("/")
         path = []
@@ -125,13 +125,13 @@ class SdfBuilder(Builder):
             found.taken = True
         return self.child_value(node, last, field.codec, field.default, key, f"{prefix}{field.path}")
 
-    def values(self, node: Node, tag: str, fields: tuple[Field, ...], key: Id, prefix: str = "") -> dict[str, Any]:
+    def values(self, node: XmlNode, tag: str, fields: tuple[ValueField, ...], key: Id, prefix: str = "") -> dict[str, Any]:
         """The values of fields in a child of a node, by name; see :meth:`value`."""
         found = {each.name: each.default for each in fields}
         place = node.child(tag)
         if place is None:
             return found
-        children: dict[str, Node] = {}
+        children: dict[str, XmlNode] = {}
         for child in place.children:
             children.setdefault(child.tag, child)
         for each in fields:
@@ -140,12 +140,12 @@ class SdfBuilder(Builder):
                 found[each.name] = self._value_of(present, place, each.codec, each.default, key, f"{prefix}{tag}/{each.path}")
         return found
 
-    def child_value(self, node: Node, tag: str, codec: Codec, default: Any, key: Id, path: str) -> Any:
+    def child_value(self, node: XmlNode, tag: str, codec: Codec, default: Any, key: Id, path: str) -> Any:
         """The value of a child element; see :meth:`value`. A text that cannot be read is reported and stays an extra."""
         child = node.take_child(tag)
         return default if child is None else self._value_of(child, node, codec, default, key, path)
 
-    def _value_of(self, child: Node, node: Node, codec: Codec, default: Any, key: Id, path: str) -> Any:
+    def _value_of(self, child: XmlNode, node: XmlNode, codec: Codec, default: Any, key: Id, path: str) -> Any:
         """The value of a child element that was taken."""
         text = " ".join((child.text or "").split())
         try:
@@ -166,7 +166,7 @@ class SdfBuilder(Builder):
 
     # ---- poses -----------------------------------------------------------------------------------------------------------
 
-    def pose(self, node: Node, key: Id) -> tuple[Pose, str | None]:
+    def pose(self, node: XmlNode, key: Id) -> tuple[Pose, str | None]:
         """The pose in a node's <pose>, and the name of the frame that it is relative to (None = the element's default)."""
         child = node.take_child("pose")
         if child is None:
@@ -188,7 +188,7 @@ class SdfBuilder(Builder):
             self.note(key, notations.POSE, written)
         return pose, written.relative_to
 
-    def base_of(self, node: Node, scope: str, name: str | None, default: Id) -> Id:
+    def base_of(self, node: XmlNode, scope: str, name: str | None, default: Id) -> Id:
         """The frame that a pose is relative to; an unknown one is reported."""
         if not name:
             return default

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.frontends.sdf.builder import SdfBuilder
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 _CONTENT = ("link", "model", "include")
 _OWN_NAMES = ("plugin",)
@@ -27,12 +27,12 @@ _BEGINS_AS_NUMBER = re.compile(r"[+-]?(?:\.?\d|inf|nan)", re.IGNORECASE)
 """What libsdformat reads as a number, which may have anything behind it."""
 
 
-def check_models(place: Node, report: Report) -> list[Node]:
+def check_models(place: XmlNode, report: Report) -> list[XmlNode]:
     """Report several models without a world around them, models without links, and names that the elements in one element share.
 
     Returns the elements that share theirs, and keep it.
     """
-    shared: list[Node] = []
+    shared: list[XmlNode] = []
     tops = [child for child in place.children if child.tag == "model"]
     if place.tag == "sdf" and len(tops) > 1:
         message = f"the file has {len(tops)} models and no <world> around them; libsdformat reads the first one alone"
@@ -48,7 +48,7 @@ def check_models(place: Node, report: Report) -> list[Node]:
     return shared
 
 
-def _check_root(place: Node, report: Report) -> None:
+def _check_root(place: XmlNode, report: Report) -> None:
     """A file without a world has a model, a light or an actor."""
     kinds = list(dict.fromkeys(child.tag for child in place.children if child.tag in ("model", "light", "actor")))
     if place.tag == "sdf" and len(kinds) > 1:
@@ -56,16 +56,16 @@ def _check_root(place: Node, report: Report) -> None:
         report.warn(codes.REPEATED, message, place.origin)
 
 
-def _check_links(node: Node, report: Report) -> None:
+def _check_links(node: XmlNode, report: Report) -> None:
     is_static = any(child.tag == "static" and (child.text or "").strip() in ("1", "true") for child in node.children)
     if not is_static and not any(child.tag in _CONTENT for child in node.children):
         message = f"the model '{node.attributes.get('name', '')}' has no link, which libsdformat refuses"
         report.warn(codes.MISSING_PART, message, node.origin)
 
 
-def _check_names(node: Node, report: Report) -> list[Node]:
-    taken: dict[str, Node] = {}
-    shared: list[Node] = []
+def _check_names(node: XmlNode, report: Report) -> list[XmlNode]:
+    taken: dict[str, XmlNode] = {}
+    shared: list[XmlNode] = []
     for child in node.children:
         name = "" if child.tag in _OWN_NAMES else child.attributes.get("name", "")
         if child.tag in _NO_REFERENCES and (name == words.WORLD_FRAME or (name.startswith("__") and name.endswith("__"))):
@@ -84,7 +84,7 @@ def _check_names(node: Node, report: Report) -> list[Node]:
 # ---- numbers -----------------------------------------------------------------------------------------------------------------
 
 
-def check_numbers(nodes: Iterable[Node], builder: SdfBuilder) -> None:
+def check_numbers(nodes: Iterable[XmlNode], builder: SdfBuilder) -> None:
     """Report elements that stay as written where SDF has numbers, and that contain none; plugins and elements with a prefix are free."""
     stack = [child for node in nodes for child in node.unread_children()]
     while stack:

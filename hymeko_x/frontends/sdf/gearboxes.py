@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.formats.sdf.gearboxes import Turn
-    from hymeko_x.frontends.sdf.builder import Model, SdfBuilder
+    from hymeko_x.frontends.sdf.builder import SdfBuilder, SdfModel
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.values import Vec3
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
 def read_gearboxes(builder: SdfBuilder) -> None:
@@ -47,7 +47,7 @@ def _hinges(builder: SdfBuilder) -> dict[frozenset[Id], Hinge]:
     return found
 
 
-def _read_gearbox(node: Node, model: Model, builder: SdfBuilder, hinges: Mapping[frozenset[Id], Hinge]) -> str | None:
+def _read_gearbox(node: XmlNode, model: SdfModel, builder: SdfBuilder, hinges: Mapping[frozenset[Id], Hinge]) -> str | None:
     """Add the coupling of a gearbox, or return why it is none."""
     key = node.owner
     assert key is not None
@@ -70,17 +70,17 @@ def _read_gearbox(node: Node, model: Model, builder: SdfBuilder, hinges: Mapping
     return None
 
 
-def _text(node: Node, tag: str) -> str:
+def _text(node: XmlNode, tag: str) -> str:
     child = node.child(tag)
     return "" if child is None else (child.text or "").strip()
 
 
-def _body(name: str, model: Model, builder: SdfBuilder) -> Id | None:
+def _body(name: str, model: SdfModel, builder: SdfBuilder) -> Id | None:
     found = builder.find(model.scope, name) if name else None
     return None if found is None else body_of(found, builder)
 
 
-def _read_axis(node: Node, tag: str, model: Model, builder: SdfBuilder) -> Vec3 | None:
+def _read_axis(node: XmlNode, tag: str, model: SdfModel, builder: SdfBuilder) -> Vec3 | None:
     """A unit axis in the world at the zero configuration."""
     axis, key = node.take_child(tag), node.owner
     if axis is None or key is None or not axis.has("xyz"):
@@ -90,7 +90,7 @@ def _read_axis(node: Node, tag: str, model: Model, builder: SdfBuilder) -> Vec3 
     return rotate(builder.frames.in_world(key).quat, direction)
 
 
-def _add_coupling(node: Node, key: Id, leader: Turn, follower: Turn, builder: SdfBuilder) -> None:
+def _add_coupling(node: XmlNode, key: Id, leader: Turn, follower: Turn, builder: SdfBuilder) -> None:
     """theta_2 = -ratio * theta_1, in the coordinates of the two joints."""
     for tag in ENDS:
         end = node.take_child(tag)

@@ -14,7 +14,7 @@ from hymeko_x.formats import sdf as words
 from hymeko_x.frontends.sdf.old import modernised
 from hymeko_x.source import Source
 from hymeko_x.xml.parse import parse
-from hymeko_x.xml.tree import Node
+from hymeko_x.xml.tree import XmlNode
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -44,8 +44,8 @@ class Included(Struct):
     report: Report
     texts: dict[str, bytes] = field(default_factory=dict)
     versions: dict[str, int] = field(default_factory=dict)
-    inserted: dict[int, list[Node]] = field(default_factory=dict)
-    parents: dict[int, Node] = field(default_factory=dict)
+    inserted: dict[int, list[XmlNode]] = field(default_factory=dict)
+    parents: dict[int, XmlNode] = field(default_factory=dict)
     paths: dict[tuple[str, str], list[str]] = field(default_factory=dict)
     count: int = 0
     bytes: int = 0
@@ -54,12 +54,12 @@ class Included(Struct):
 class _Place(Struct, frozen=True):
     """An <include> in the file ``path``, which ``chain`` of files leads to."""
 
-    node: Node
+    node: XmlNode
     folder: str
     chain: tuple[str, ...]
 
 
-def expand_includes(root: Node, source: Source, data: bytes, version: int, report: Report) -> Included:
+def expand_includes(root: XmlNode, source: Source, data: bytes, version: int, report: Report) -> Included:
     """Put the models of other files where they are included; an <include> that leads nowhere stays as it is. Not recursive."""
     found = Included(source, report, {source.name: data}, {source.name: version})
     stack = [_Place(node, "", ()) for node in _includes(root)]
@@ -71,7 +71,7 @@ def expand_includes(root: Node, source: Source, data: bytes, version: int, repor
     return found
 
 
-def _expanded(parent: Node, inserted: Mapping[int, list[Node]]) -> Iterator[Node]:
+def _expanded(parent: XmlNode, inserted: Mapping[int, list[XmlNode]]) -> Iterator[XmlNode]:
     """The children of an element with models in the places of their includes, also of those in merged models. Not recursive."""
     stack = parent.children[::-1]
     while stack:
@@ -82,7 +82,7 @@ def _expanded(parent: Node, inserted: Mapping[int, list[Node]]) -> Iterator[Node
             yield node
 
 
-def _includes(node: Node) -> Iterator[Node]:
+def _includes(node: XmlNode) -> Iterator[XmlNode]:
     """The includes of worlds and models, also of nested ones; not those in plugins and other elements."""
     stack = [node]
     while stack:
@@ -93,7 +93,7 @@ def _includes(node: Node) -> Iterator[Node]:
                 stack.append(child)
 
 
-def _expand(place: _Place, found: Included) -> list[tuple[Node, tuple[str, tuple[str, ...]]]]:
+def _expand(place: _Place, found: Included) -> list[tuple[XmlNode, tuple[str, tuple[str, ...]]]]:
     """Put one model in the place of its include. Returns the includes in it, with the folder and the chain of files that led there."""
     uri = _text(place.node, "uri")
     path = _path(uri, place, found)
@@ -148,7 +148,7 @@ def _paths(uri: str, place: _Place, found: Included) -> list[str]:
     return found.paths.setdefault((uri, folder), paths)
 
 
-def _of_folder(uri: str, include: Node, found: Included) -> str | None:
+def _of_folder(uri: str, include: XmlNode, found: Included) -> str | None:
     """The file that the `model.config` of a folder names for the highest version, else its `model.sdf`."""
     files = found.source.files
     config = files.find(f"{uri}/model.config")
@@ -168,7 +168,7 @@ def _of_folder(uri: str, include: Node, found: Included) -> str | None:
     return files.find(posixpath.join(posixpath.dirname(config), name))
 
 
-def _model(path: str, include: Node, found: Included) -> Node | None:
+def _model(path: str, include: XmlNode, found: Included) -> XmlNode | None:
     """The <model> of a file; None where it has none, which is reported."""
     report = found.report
     try:
@@ -201,11 +201,11 @@ def _model(path: str, include: Node, found: Included) -> Node | None:
 # ---- changing --------------------------------------------------------------------------------------------------------------
 
 
-def _text(node: Node, tag: str) -> str:
+def _text(node: XmlNode, tag: str) -> str:
     return next(((child.text or "").strip() for child in node.children if child.tag == tag), "")
 
 
-def _check(include: Node, uri: str, report: Report) -> None:
+def _check(include: XmlNode, uri: str, report: Report) -> None:
     """Report what libsdformat reads otherwise in an include."""
     if _text(include, "placement_frame") and include.child("pose") is None:
         message = f"the <include> of '{uri}' has a <placement_frame> and no <pose>, which libsdformat refuses; the pose is zero"
@@ -215,7 +215,7 @@ def _check(include: Node, uri: str, report: Report) -> None:
         report.warn(codes.UNKNOWN_WORD, message, params.origin)
 
 
-def _override(model: Node, include: Node) -> None:
+def _override(model: XmlNode, include: XmlNode) -> None:
     """What the include gives in place of the model's own, and besides: name, pose, whether it stands, placement frame, further elements."""
     name = _text(include, "name")
     if name:
@@ -231,15 +231,15 @@ def _override(model: Node, include: Node) -> None:
             model.children.append(child)
 
 
-def _merged(model: Node, include: Node) -> list[Node]:
+def _merged(model: XmlNode, include: XmlNode) -> list[XmlNode]:
     """The content of a model for the model around it; a frame stands for the model's own."""
     name = f"_merged__{model.attributes.get('name', 'model')}__model_frame__"
     links = [node.attributes.get("name", "") for node in model.children if node.tag == "link"]
-    frame = Node("frame", {"name": name}, None, include.file, include.line, include.start)
+    frame = XmlNode("frame", {"name": name}, None, include.file, include.line, include.start)
     canonical = model.attributes.get("canonical_link") or next(iter(links), "")
     if canonical:
         frame.attributes["attached_to"] = canonical
-    pose = model.child("pose") or Node("pose", {}, frame, include.file, include.line)
+    pose = model.child("pose") or XmlNode("pose", {}, frame, include.file, include.line)
     pose.attributes.setdefault("relative_to", words.MODEL_FRAME)
     pose.parent = frame
     frame.children = [pose]
@@ -249,12 +249,12 @@ def _merged(model: Node, include: Node) -> list[Node]:
     return [frame, *content]
 
 
-def _refer_to(frame: str, node: Node) -> None:
+def _refer_to(frame: str, node: XmlNode) -> None:
     """Give a child of a merged model, and all that names the model's frame in it, in the frame that stands for it."""
     poses = [child for child in node.children if child.tag == "pose"]
     if node.tag in _WITH_POSE and not node.attributes.get("attached_to"):
         if not poses:
-            poses = [Node("pose", {}, node, node.file, node.line)]
+            poses = [XmlNode("pose", {}, node, node.file, node.line)]
             node.children.insert(0, poses[0])
         poses[0].attributes.setdefault("relative_to", frame)
     if node.attributes.get("attached_to") == words.MODEL_FRAME:

@@ -18,16 +18,16 @@ from hymeko_x.ir.parts import Coupling, Dof, DofKind, Joint, Limits, World
 from hymeko_x.ir.values import NO_ROTATION, Written, Z, rotate, unit
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.sdf.builder import Model, SdfBuilder
+    from hymeko_x.frontends.sdf.builder import SdfBuilder, SdfModel
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.values import Vec3
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 _OLD_DEFAULT = 7
 """The version from which on an axis is given in the joint's frame and names another one in ``expressed_in``."""
 
 
-def read_joint(node: Node, model: Model, builder: SdfBuilder) -> None:
+def read_joint(node: XmlNode, model: SdfModel, builder: SdfBuilder) -> None:
     """Add a joint; one without two ends or of an unknown type stays as it was written, and a gearbox waits for the other joints."""
     key = node.owner
     assert key is not None
@@ -56,7 +56,7 @@ def read_joint(node: Node, model: Model, builder: SdfBuilder) -> None:
         read_joint_sensor(sensor, key, model, builder)
 
 
-def keep_as_written(node: Node, key: Id, model: Model, builder: SdfBuilder) -> None:
+def keep_as_written(node: XmlNode, key: Id, model: SdfModel, builder: SdfBuilder) -> None:
     """Give up the id, so that the whole element is unread."""
     node.owner = None
     node.attributes = {"name": words.split_scope(key.name)[1], **node.attributes}
@@ -73,7 +73,7 @@ def keep_as_written(node: Node, key: Id, model: Model, builder: SdfBuilder) -> N
 # ---- ends ------------------------------------------------------------------------------------------------------------------------
 
 
-def _read_ends(node: Node, model: Model, builder: SdfBuilder) -> tuple[Id, Id] | None:
+def _read_ends(node: XmlNode, model: SdfModel, builder: SdfBuilder) -> tuple[Id, Id] | None:
     """The bodies that the joint joins; frames stand for the bodies that they are on."""
     names, bodies = [], []
     for tag in ("parent", "child"):
@@ -106,12 +106,12 @@ def _read_ends(node: Node, model: Model, builder: SdfBuilder) -> tuple[Id, Id] |
 # ---- dofs ------------------------------------------------------------------------------------------------------------------------
 
 
-def _read_dofs(node: Node, kind: str, key: Id, model: Model, builder: SdfBuilder) -> tuple[Dof, ...]:
+def _read_dofs(node: XmlNode, kind: str, key: Id, model: SdfModel, builder: SdfBuilder) -> tuple[Dof, ...]:
     found = words.JOINT_TYPES[kind]
     return tuple([_read_dof(node, dof, tag, kind, key, model, builder) for dof, tag in zip(found.dofs, words.AXES, strict=False)])
 
 
-def _read_dof(node: Node, kind: DofKind, tag: str, word: str, key: Id, model: Model, builder: SdfBuilder) -> Dof:
+def _read_dof(node: XmlNode, kind: DofKind, tag: str, word: str, key: Id, model: SdfModel, builder: SdfBuilder) -> Dof:
     axis = node.take_child(tag)
     if kind is DofKind.BALL:
         dynamics = {} if axis is None else builder.values(axis, "dynamics", DYNAMICS[:1], key, f"{tag}/")
@@ -127,7 +127,7 @@ def _read_dof(node: Node, kind: DofKind, tag: str, word: str, key: Id, model: Mo
     return Dof(kind, direction, limits=limits, **dynamics, pitch=pitch, written=written)
 
 
-def _read_pitch(node: Node, key: Id, builder: SdfBuilder) -> float:
+def _read_pitch(node: XmlNode, key: Id, builder: SdfBuilder) -> float:
     """The pitch of a screw in m per rad: ``screw_thread_pitch``, or ``thread_pitch`` of old files, which is the inverse, left-handed."""
     new = builder.child_value(node, "screw_thread_pitch", PITCH, None, key, "screw_thread_pitch")
     if new is not None:
@@ -139,7 +139,7 @@ def _read_pitch(node: Node, key: Id, builder: SdfBuilder) -> float:
     return float(OLD_PITCH.read("1"))  # libsdformat's default
 
 
-def read_axis(axis: Node, tag: str, key: Id, model: Model, builder: SdfBuilder) -> tuple[Vec3, Written | None]:
+def read_axis(axis: XmlNode, tag: str, key: Id, model: SdfModel, builder: SdfBuilder) -> tuple[Vec3, Written | None]:
     """The unit axis in the joint's frame, and the numbers as written where they have another length."""
     xyz = axis.take_child("xyz")
     if xyz is None:
@@ -163,7 +163,7 @@ def read_axis(axis: Node, tag: str, key: Id, model: Model, builder: SdfBuilder) 
     return direction, None if direction == numbers else Written("axis", numbers)
 
 
-def _frame_of_axis(xyz: Node, axis: Node, tag: str, key: Id, model: Model, builder: SdfBuilder) -> Id | None:
+def _frame_of_axis(xyz: XmlNode, axis: XmlNode, tag: str, key: Id, model: SdfModel, builder: SdfBuilder) -> Id | None:
     """The frame in which an axis is given, if not that of the joint: named, or the model's in old files."""
     name = xyz.take("expressed_in")
     if name:
@@ -189,7 +189,7 @@ def _frame_of_axis(xyz: Node, axis: Node, tag: str, key: Id, model: Model, build
 # ---- mimic -----------------------------------------------------------------------------------------------------------------------
 
 
-def _read_couplings(node: Node, key: Id, model: Model, builder: SdfBuilder) -> None:
+def _read_couplings(node: XmlNode, key: Id, model: SdfModel, builder: SdfBuilder) -> None:
     for number, tag in enumerate(words.AXES):
         axis = node.child(tag)
         mimic = None if axis is None else axis.take_child("mimic")
@@ -212,12 +212,12 @@ def _read_couplings(node: Node, key: Id, model: Model, builder: SdfBuilder) -> N
         _read_mimic(mimic, key, leader, number, builder)
 
 
-def _has_two_axes(joint: Id, model: Model) -> bool:
+def _has_two_axes(joint: Id, model: SdfModel) -> bool:
     kinds = [child.attributes.get("type", "") for child in model.node.children if child.owner == joint]
     return not kinds or len(words.JOINT_TYPES.get(kinds[0], words.JOINT_TYPES["fixed"]).dofs) > 1
 
 
-def _read_mimic(mimic: Node, follower: Id, leader: Id, number: int, builder: SdfBuilder) -> None:
+def _read_mimic(mimic: XmlNode, follower: Id, leader: Id, number: int, builder: SdfBuilder) -> None:
     """follower = multiplier * (leader - reference) + offset."""
     mimic.take("joint")
     axis = mimic.take("axis")

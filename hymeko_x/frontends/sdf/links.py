@@ -20,13 +20,13 @@ from hymeko_x.rewrite.inertia import is_physical
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.sdf.builder import Model, SdfBuilder
+    from hymeko_x.frontends.sdf.builder import SdfBuilder, SdfModel
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.values import Pose, Tensor
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
-def read_link(node: Node, model: Model, builder: SdfBuilder) -> None:
+def read_link(node: XmlNode, model: SdfModel, builder: SdfBuilder) -> None:
     """Add what a link has: its inertial, visuals first, then collisions, then sensors and lights."""
     key = node.owner
     assert key is not None
@@ -45,7 +45,7 @@ def read_link(node: Node, model: Model, builder: SdfBuilder) -> None:
         read_light(light, key, model, builder)
 
 
-def _read_inertial(link: Node, key: Id, model: Model, builder: SdfBuilder) -> Inertial | None:
+def _read_inertial(link: XmlNode, key: Id, model: SdfModel, builder: SdfBuilder) -> Inertial | None:
     """Mass, centre of mass and tensor; None where they come from the collisions.
 
     What is missing is 1 kg and 1 kg m^2, as libsdformat has it.
@@ -72,12 +72,12 @@ def _read_inertial(link: Node, key: Id, model: Model, builder: SdfBuilder) -> In
     return Inertial(mass, pose.xyz, rotate_tensor(pose.quat, tensor), InertialWritten(pose, tensor))
 
 
-def is_auto(node: Node, builder: SdfBuilder) -> bool:
+def is_auto(node: XmlNode, builder: SdfBuilder) -> bool:
     """Whether the inertial of a link comes from its collisions, which the element that stays as written then says."""
     return node.attributes.get("auto", "").lower() in ("true", "1") and builder.version_of(node) >= words.minor(words.VERSION_OF_AUTO)
 
 
-def _density(link: Node, key: Id, builder: SdfBuilder) -> float | None:
+def _density(link: XmlNode, key: Id, builder: SdfBuilder) -> float | None:
     """The density in kg/m^3 of collisions that give none, where the inertial comes from them; else None."""
     node = link.child("inertial")
     if node is None:
@@ -87,7 +87,7 @@ def _density(link: Node, key: Id, builder: SdfBuilder) -> float | None:
     return numbers[0] if numbers else words.DENSITY
 
 
-def _inertial_of_collisions(link: Node, key: Id, density: float, builder: SdfBuilder) -> Inertial | None:
+def _inertial_of_collisions(link: XmlNode, key: Id, density: float, builder: SdfBuilder) -> Inertial | None:
     """The inertial of the link's collisions, scaled to the mass where the file gives one; None where there is a mesh among them."""
     views = [
         ShapeView(shape, edge.data, key, pose_weight(edge.arcs[0]), None, None)
@@ -105,7 +105,7 @@ def _inertial_of_collisions(link: Node, key: Id, density: float, builder: SdfBui
     return (found.times(mass[0] / found.mass) if mass else found).inertial()
 
 
-def _read_pose(inertial: Node, key: Id, builder: SdfBuilder) -> Pose:
+def _read_pose(inertial: XmlNode, key: Id, builder: SdfBuilder) -> Pose:
     """The pose of the centre of mass and its axes; nothing names the frame that it is relative to, which is the link."""
     child = inertial.take_child("pose")
     if child is None:

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.sdf.builder import SdfBuilder
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Rgba
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
-def read_material(visual: Node, key: Id, builder: SdfBuilder) -> tuple[Rgba | None, Id | None]:
+def read_material(visual: XmlNode, key: Id, builder: SdfBuilder) -> tuple[Rgba | None, Id | None]:
     """The colour of a visual, or, where it has textures, the material with them. Scripts and further colours stay as written."""
     node = visual.child("material")
     if node is None or not node.children:
@@ -51,7 +51,7 @@ def read_material(visual: Node, key: Id, builder: SdfBuilder) -> tuple[Rgba | No
     return None, material
 
 
-def _read_colour(node: Node, key: Id, builder: SdfBuilder) -> Rgba | None:
+def _read_colour(node: XmlNode, key: Id, builder: SdfBuilder) -> Rgba | None:
     """The diffuse colour. An ambient one with the same text is a notation: files that were written from other formats have both."""
     texts = [None if (child := node.child(tag)) is None or child.children else child.text for tag in ("ambient", "diffuse")]
     rgba: Rgba | None = builder.child_value(node, "diffuse", COLOUR, None, key, "material/diffuse")

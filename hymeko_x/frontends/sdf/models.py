@@ -11,7 +11,7 @@ from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.gearboxes import GEARBOX
 from hymeko_x.formats.sdf.values import TRUTH
-from hymeko_x.frontends.sdf.builder import Model
+from hymeko_x.frontends.sdf.builder import SdfModel
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge, mount_edge
 from hymeko_x.ir.names import free_name, rename
 from hymeko_x.ir.notations import UNNAMED
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.sdf.builder import SdfBuilder
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.ir.values import Pose
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
 # ---- names and places ----------------------------------------------------------------------------------------------------------
 
 
-def collect_models(tops: list[Node], builder: SdfBuilder, *, is_alone: bool) -> list[Model]:
+def collect_models(tops: list[XmlNode], builder: SdfBuilder, *, is_alone: bool) -> list[SdfModel]:
     """All models, those around others first. One that is alone gives its name to the mechanism, and no scope to its content."""
-    found: list[Model] = []
-    stack: list[tuple[Node, Model | None]] = [(node, None) for node in reversed(tops)]
+    found: list[SdfModel] = []
+    stack: list[tuple[XmlNode, SdfModel | None]] = [(node, None) for node in reversed(tops)]
     while stack:
         node, around = stack.pop()
         model = _alone(node, builder) if is_alone and around is None else _in_scope(node, around, builder)
@@ -43,13 +43,13 @@ def collect_models(tops: list[Node], builder: SdfBuilder, *, is_alone: bool) -> 
     return found
 
 
-def _alone(node: Node, builder: SdfBuilder) -> Model:
+def _alone(node: XmlNode, builder: SdfBuilder) -> SdfModel:
     frame = Id("frame", words.MODEL_FRAME)
     builder.named[words.MODEL_FRAME] = frame
-    return Model(node, "", frame, is_static=_is_static(node, None, ROOT, builder))
+    return SdfModel(node, "", frame, is_static=_is_static(node, None, ROOT, builder))
 
 
-def _in_scope(node: Node, around: Model | None, builder: SdfBuilder) -> Model:
+def _in_scope(node: XmlNode, around: SdfModel | None, builder: SdfBuilder) -> SdfModel:
     outer = "" if around is None else around.scope
     name = node.take("name") or "model"
     free = free_name(outer + name, lambda name: name + words.SCOPE + words.MODEL_FRAME in builder.named)
@@ -62,17 +62,17 @@ def _in_scope(node: Node, around: Model | None, builder: SdfBuilder) -> Model:
     builder.vertices[frame] = Frame()
     builder.named.setdefault(outer + name, frame)
     builder.named[scope + words.MODEL_FRAME] = frame
-    return Model(node, scope, frame, around, _is_static(node, around, frame, builder))
+    return SdfModel(node, scope, frame, around, _is_static(node, around, frame, builder))
 
 
-def _is_static(node: Node, around: Model | None, key: Id, builder: SdfBuilder) -> bool:
+def _is_static(node: XmlNode, around: SdfModel | None, key: Id, builder: SdfBuilder) -> bool:
     own: bool = builder.child_value(node, "static", TRUTH, False, key, "static")
     if own:
         builder.written.setdefault(key, {}).setdefault("static", "true")
     return own or (around is not None and around.is_static)
 
 
-def register_content(model: Model, builder: SdfBuilder) -> None:
+def register_content(model: SdfModel, builder: SdfBuilder) -> None:
     """Give ids to the links, frames and joints of a model; references may lead to any of them."""
     kinds = (("link", "body"), ("frame", "frame"), ("joint", "joint"))
     for tag, kind in kinds:
@@ -93,7 +93,7 @@ def register_content(model: Model, builder: SdfBuilder) -> None:
     builder.layout += [child.owner for child in inner if child.owner is not None]
 
 
-def name_from_outside(model: Model, builder: SdfBuilder) -> None:
+def name_from_outside(model: SdfModel, builder: SdfBuilder) -> None:
     """The world's own frames and joints name the content of its only model with that model's name before it."""
     name = model.node.attributes.get("name", "")
     outside = f"{words.WORLD_SCOPE}{name}"
@@ -102,7 +102,7 @@ def name_from_outside(model: Model, builder: SdfBuilder) -> None:
     builder.named |= {outside: model.frame, **inside}
 
 
-def place_content(model: Model, builder: SdfBuilder) -> None:
+def place_content(model: SdfModel, builder: SdfBuilder) -> None:
     """Put the links and frames of a model into the frame graph; joints are given in their children."""
     for node in model.node.children:
         if node.owner is None or node.tag not in ("link", "frame", "joint"):
@@ -116,7 +116,7 @@ def place_content(model: Model, builder: SdfBuilder) -> None:
         builder.frames.put(node.owner, builder.base_of(node, model.scope, name, default), pose)
 
 
-def _attachment(node: Node, model: Model, builder: SdfBuilder) -> Id:
+def _attachment(node: XmlNode, model: SdfModel, builder: SdfBuilder) -> Id:
     """What a frame is attached to; it is given in that."""
     assert node.owner is not None
     name = node.take("attached_to")
@@ -134,13 +134,13 @@ def _attachment(node: Node, model: Model, builder: SdfBuilder) -> Id:
     return found or model.frame
 
 
-def _child_end(node: Node, model: Model, builder: SdfBuilder) -> Id:
+def _child_end(node: XmlNode, model: SdfModel, builder: SdfBuilder) -> Id:
     child = node.child("child")
     found = None if child is None else builder.find(model.scope, (child.text or "").strip())
     return found or model.frame
 
 
-def place_model(model: Model, builder: SdfBuilder) -> None:
+def place_model(model: SdfModel, builder: SdfBuilder) -> None:
     """Put the frame of a model into the frame graph; what it contains must be there already.
 
     The model's pose is that of its placement frame where it names one.
@@ -156,7 +156,7 @@ def place_model(model: Model, builder: SdfBuilder) -> None:
     builder.frames.put(model.frame, base, pose)
 
 
-def _back_from_placement(name: str, model: Model, builder: SdfBuilder) -> Pose:
+def _back_from_placement(name: str, model: SdfModel, builder: SdfBuilder) -> Pose:
     found = builder.find(model.scope, name)
     inside = None if found is None else builder.frames.inside(found, model.frame)
     if inside is None:
@@ -166,7 +166,7 @@ def _back_from_placement(name: str, model: Model, builder: SdfBuilder) -> Pose:
     return inverse(inside)
 
 
-def note_model(models: list[Model], builder: SdfBuilder) -> None:
+def note_model(models: list[SdfModel], builder: SdfBuilder) -> None:
     """Keep where the frame of the only model is, which is no element."""
     for model in models:
         pose = builder.frames.in_world(model.frame)
@@ -198,7 +198,7 @@ def body_of(frame: Id, builder: SdfBuilder) -> Id | None:
     return found
 
 
-def attach_models(models: list[Model], builder: SdfBuilder) -> None:
+def attach_models(models: list[SdfModel], builder: SdfBuilder) -> None:
     """A model moves with its canonical link: the named one, else its first link, else that of its first nested model."""
     for model in models:
         name = model.node.attributes.get("canonical_link")
@@ -217,7 +217,7 @@ def attach_models(models: list[Model], builder: SdfBuilder) -> None:
                 builder.attached[node.owner] = _child_end(node, model, builder)
 
 
-def mount_frames(models: list[Model], builder: SdfBuilder) -> None:
+def mount_frames(models: list[SdfModel], builder: SdfBuilder) -> None:
     """Every frame, and every model that has one of its own, becomes a frame on its body."""
     keys = [key for model in models for key in (model.frame, *(node.owner for node in model.node.children if node.tag == "frame"))]
     frames = [key for key in keys if key is not None and key != WORLD and key in builder.vertices]
@@ -241,7 +241,7 @@ def mount_frame(key: Id, builder: SdfBuilder) -> None:
 # ---- bases -----------------------------------------------------------------------------------------------------------------------
 
 
-def hold_bases(models: list[Model], builder: SdfBuilder, *, in_world: bool) -> None:
+def hold_bases(models: list[SdfModel], builder: SdfBuilder, *, in_world: bool) -> None:
     """Bodies of static models stand; other bodies without a parent joint float, or are open where nothing says where they are."""
     children = {edge.arcs[1].target for edge in builder.edges.values() if isinstance(edge.data, Joint)}
     links = [(model, node.owner) for model in models for node in model.node.children if node.tag == "link" and node.owner]
@@ -263,7 +263,7 @@ def _hold(body: Id, pose: Pose, joint: Joint, builder: SdfBuilder) -> None:
     builder.origins[key] = builder.origins[body]
 
 
-def close_cycles(models: list[Model], builder: SdfBuilder) -> None:
+def close_cycles(models: list[SdfModel], builder: SdfBuilder) -> None:
     """Joints that lead to a link which another joint holds close a loop.
 
     So does the joint above the first link of a cycle of which no link is a root, so that the tree starts there.
@@ -293,7 +293,7 @@ def close_cycles(models: list[Model], builder: SdfBuilder) -> None:
     builder.layout = [loops.get(key, key) for key in builder.layout] if loops else builder.layout
 
 
-def _make_loop(joint: Id, node: Node, builder: SdfBuilder) -> Id:
+def _make_loop(joint: Id, node: XmlNode, builder: SdfBuilder) -> Id:
     """The loop that the joint is instead."""
     edge = builder.edges.pop(joint)
     assert isinstance(edge.data, Joint)

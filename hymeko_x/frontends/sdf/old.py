@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats.sdf import fragments
 from hymeko_x.xml.printing import markup
-from hymeko_x.xml.tree import Document, Node, TreeBuilder
+from hymeko_x.xml.tree import TreeBuilder, XmlDocument, XmlNode
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -52,7 +52,7 @@ _NEW_IN: Mapping[tuple[str, str], str] = MappingProxyType(
 """Attributes whose elements have another name."""
 
 
-def modernised(document: Document, report: Report) -> Document:
+def modernised(document: XmlDocument, report: Report) -> XmlDocument:
     """A document whose root is <sdf>, with the lines of the original; the same one where that is so already."""
     root = document.root
     if root.tag != ROOT or root.attributes.get("version", VERSIONS[0]) not in VERSIONS:
@@ -68,14 +68,14 @@ def modernised(document: Document, report: Report) -> Document:
                 child.tag = _NEW_IN.get((node.tag, child.tag), child.tag)
         elif node.tag == "script" and node.text and node.parent is not None and node.parent.tag == "material":
             texts = (("uri", fragments.MATERIALS), ("name", node.text))
-            node.children, node.text = [Node(tag, {}, node, node.file, node.line, text=text) for tag, text in texts], None
+            node.children, node.text = [XmlNode(tag, {}, node, node.file, node.line, text=text) for tag, text in texts], None
     lines = [node.line or 1 for node in root.walk() if node.is_element]
     text = markup(root).encode()
     again = TreeBuilder(root.file, text, report, iter(lines)).document()
-    return Document(again.root, document.preceding, document.following, again.data)
+    return XmlDocument(again.root, document.preceding, document.following, again.data)
 
 
-def _turn_attributes_into_elements(root: Node) -> None:
+def _turn_attributes_into_elements(root: XmlNode) -> None:
     """Plugins are left as they are."""
     stack = [child for child in root.children if child.is_element]
     while stack:
@@ -88,7 +88,7 @@ def _turn_attributes_into_elements(root: Node) -> None:
             if _TEXTS.get(node.tag) == name:
                 node.text = text
                 continue
-            child = Node(_NEW_IN.get((node.tag, name), name), {}, node, node.file, node.line, text=text)
+            child = XmlNode(_NEW_IN.get((node.tag, name), name), {}, node, node.file, node.line, text=text)
             children.append(child)
         stack += [child for child in node.children if child.is_element]
         node.children = [*children, *node.children]

@@ -13,12 +13,12 @@ from hymeko_x.ir.parts import Camera, Light, Sensor, World
 from hymeko_x.ir.values import NO_ROTATION, Pose, compose, quat_from_z, scaled, unit
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.sdf.builder import Model, SdfBuilder
+    from hymeko_x.frontends.sdf.builder import SdfBuilder, SdfModel
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
-def read_link_sensor(node: Node, body: Id, model: Model, builder: SdfBuilder) -> None:
+def read_link_sensor(node: XmlNode, body: Id, model: SdfModel, builder: SdfBuilder) -> None:
     """A sensor on a link; a plain camera is a camera. What its kind has of its own stays as written."""
     camera = node.child("camera")
     if node.attributes.get("type") == "camera" and camera is not None:
@@ -34,14 +34,14 @@ def read_link_sensor(node: Node, body: Id, model: Model, builder: SdfBuilder) ->
     builder.edges[builder.names.take("mount", key.name)] = mount_edge(body, key, pose)
 
 
-def read_joint_sensor(node: Node, joint: Id, model: Model, builder: SdfBuilder) -> None:
+def read_joint_sensor(node: XmlNode, joint: Id, model: SdfModel, builder: SdfBuilder) -> None:
     """A sensor of a joint, which measures it; its pose stays as written."""
     key = _own(node, "sensor", model.scope, builder)
     builder.vertices[key] = _read_sensor(node, key, builder)
     builder.edges[builder.names.take("sense", key.name)] = sense_edge(joint, key)
 
 
-def _own(node: Node, kind: str, scope: str, builder: SdfBuilder) -> Id:
+def _own(node: XmlNode, kind: str, scope: str, builder: SdfBuilder) -> Id:
     """The id of a sensor or light; another link may have one of the same name."""
     name = node.take("name") or node.tag
     wanted = words.scoped(scope, name).removeprefix(words.WORLD_SCOPE)
@@ -51,18 +51,18 @@ def _own(node: Node, kind: str, scope: str, builder: SdfBuilder) -> Id:
     return key
 
 
-def _pose(node: Node, key: Id, body: Id, model: Model, builder: SdfBuilder) -> Pose:
+def _pose(node: XmlNode, key: Id, body: Id, model: SdfModel, builder: SdfBuilder) -> Pose:
     pose, name = builder.pose(node, key)
     frame = builder.base_of(node, model.scope, name, body)
     return pose if frame == body else compose(builder.frames.relative(frame, body), pose)
 
 
-def _read_sensor(node: Node, key: Id, builder: SdfBuilder) -> Sensor:
+def _read_sensor(node: XmlNode, key: Id, builder: SdfBuilder) -> Sensor:
     rate = builder.child_value(node, "update_rate", NUMBER, None, key, "update_rate")
     return Sensor(node.take("type") or "none", rate)
 
 
-def _read_camera(node: Node, key: Id, builder: SdfBuilder) -> Camera:
+def _read_camera(node: XmlNode, key: Id, builder: SdfBuilder) -> Camera:
     """A camera with its vertical field of view, from the horizontal one and the shape of the image."""
     has_field = node.has(HFOV.path)
     across = builder.value(node, HFOV, key, "camera/")
@@ -77,7 +77,7 @@ def _read_camera(node: Node, key: Id, builder: SdfBuilder) -> Camera:
 # ---- lights ------------------------------------------------------------------------------------------------------------------
 
 
-def read_light(node: Node, body: Id, model: Model, builder: SdfBuilder) -> None:
+def read_light(node: XmlNode, body: Id, model: SdfModel, builder: SdfBuilder) -> None:
     """A light on a link, or on the world; it shines along its own -z, whatever direction the file gives in its frame."""
     key = _own(node, "light", model.scope, builder)
     kind = node.take("type") or "point"

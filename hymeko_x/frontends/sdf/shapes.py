@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import sdf as words
-from hymeko_x.formats.sdf.values import NUMBER, PAIR, SOLIDS, VECTOR, Field
+from hymeko_x.formats.sdf.values import NUMBER, PAIR, SOLIDS, VECTOR, ValueField
 from hymeko_x.frontends.sdf.materials import read_material
 from hymeko_x.ir.mechanism import shape_edge
 from hymeko_x.ir.parts import Mesh, MeshShape, NoShape, Plane, Role, Shape
@@ -14,15 +14,15 @@ from hymeko_x.ir.values import Pose, Z, compose, quat_from_z, unit
 from hymeko_x.source import file_stem
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.sdf.builder import Model, SdfBuilder
+    from hymeko_x.frontends.sdf.builder import SdfBuilder, SdfModel
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Geometry
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
-_FRICTION = Field("surface/friction/ode/mu", "friction", NUMBER)
+_FRICTION = ValueField("surface/friction/ode/mu", "friction", NUMBER)
 
 
-def read_shape(node: Node, number: int, role: Role, body: Id, model: Model, builder: SdfBuilder, density: float | None) -> None:
+def read_shape(node: XmlNode, number: int, role: Role, body: Id, model: SdfModel, builder: SdfBuilder, density: float | None) -> None:
     """Add a shape, the n-th of its role. ``density`` in kg/m^3 is that of collisions from which the body's inertial comes, else None."""
     name = node.take("name")
     node.owner = key = builder.fresh("shape", f"{body.name}/{node.tag}", node.origin)
@@ -36,7 +36,7 @@ def read_shape(node: Node, number: int, role: Role, body: Id, model: Model, buil
     weight = None
     if density is not None and role is Role.COLLISION:
         is_given = node.has("density")
-        weight = builder.value(node, Field("density", "density", NUMBER, density), key)
+        weight = builder.value(node, ValueField("density", "density", NUMBER, density), key)
         if is_given and weight is not None:
             builder.written.setdefault(key, {}).setdefault("density", NUMBER.write(weight))
     shape = Shape(geometry, role, None if name == words.shape_name(node.tag, number) else name, rgba, density=weight)
@@ -48,7 +48,7 @@ def read_shape(node: Node, number: int, role: Role, body: Id, model: Model, buil
 # ---- geometry ----------------------------------------------------------------------------------------------------------------
 
 
-def _read_geometry(shape: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry, Id | None, Pose | None]:
+def _read_geometry(shape: XmlNode, key: Id, builder: SdfBuilder) -> tuple[Geometry, Id | None, Pose | None]:
     """The geometry of a shape, its mesh, and how it is turned in the shape's frame."""
     node = shape.child("geometry")
     if node is None:
@@ -76,7 +76,7 @@ def _read_geometry(shape: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry,
     return kind(*[builder.value(found, field, key, f"geometry/{found.tag}/") for field in fields]), None, None
 
 
-def _geometry_of(node: Node, shape: Node, builder: SdfBuilder) -> Node | None:
+def _geometry_of(node: XmlNode, shape: XmlNode, builder: SdfBuilder) -> XmlNode | None:
     """The child of a <geometry> that counts; None without one."""
     found = [child for child in node.children if child.tag in words.GEOMETRIES]
     if len(found) < 2:
@@ -87,7 +87,7 @@ def _geometry_of(node: Node, shape: Node, builder: SdfBuilder) -> Node | None:
     return first
 
 
-def _read_plane(node: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry, Id | None, Pose | None]:
+def _read_plane(node: XmlNode, key: Id, builder: SdfBuilder) -> tuple[Geometry, Id | None, Pose | None]:
     """A plane with its normal along z; the shape is turned so that it points where the file says."""
     size = builder.child_value(node, "size", PAIR, (1.0, 1.0), key, "geometry/plane/size")
     normal = builder.child_value(node, "normal", VECTOR, Z, key, "geometry/plane/normal")
@@ -101,7 +101,7 @@ def _read_plane(node: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry, Id 
     return Plane((size[0] / 2.0, size[1] / 2.0)), None, None if normal == Z else Pose(quat=turn)
 
 
-def _read_mesh(node: Node, key: Id, builder: SdfBuilder) -> Id:
+def _read_mesh(node: XmlNode, key: Id, builder: SdfBuilder) -> Id:
     """The mesh vertex of a file and scale; shapes that use the same ones share it. A submesh is kept as written."""
     child = node.take_child("uri")
     uri = "" if child is None else child.take_text()

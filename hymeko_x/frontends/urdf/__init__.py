@@ -27,11 +27,11 @@ from hymeko_x.xml.unread import Unread, extras_around
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.source import Source
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
 def read(source: Source, report: Report) -> Reading:
-    """The mechanism that a URDF file describes, and the residue that it carries.
+    """The mechanism that a URDF file describes, and the residue that it contains.
 
     Raises: Refusal with HX004 (not XML), HX006 (the root is not <robot>), HX007 (too large), HX008 (entities).
     """
@@ -40,7 +40,7 @@ def read(source: Source, report: Report) -> Reading:
     _check_root(root)
     builder = UrdfBuilder(report, Unread(root, document.data, words.FORMAT, report))
     name = _read_name(root, source, builder)
-    carried = [node.take_whole_text() for node in root.take_children(words.RESIDUE)]
+    residue = [node.take_whole_text() for node in root.take_children(words.RESIDUE)]
     _read_version(root, builder)
     for node in root.take_children("material"):
         read_robot_material(root, node, builder)
@@ -51,20 +51,20 @@ def read(source: Source, report: Report) -> Reading:
         read_transmission(node, builder)
     read_ros2_control(root, builder)
     finish_materials(builder)
-    check_structure(root, builder, is_whole=source.is_whole("".join(carried)))
+    check_structure(root, builder, is_whole=source.is_whole("".join(residue)))
     _check_templates(root, builder)
     builder.add_extras(ROOT, *read_srdf(source, builder))
-    return Reading(builder.finish(name, extras_around(document, words.FORMAT), source.name), "".join(carried))
+    return Reading(builder.finish(name, extras_around(document, words.FORMAT), source.name), "".join(residue))
 
 
-def _check_root(root: Node) -> None:
+def _check_root(root: XmlNode) -> None:
     if root.tag == "robot":
         return
     message = f"the root element is <{root.tag}>, not <robot>"
     raise refuse(codes.WRONG_ROOT, message, root.origin, hint=formats.root_hint(root.tag))
 
 
-def _read_name(root: Node, source: Source, builder: UrdfBuilder) -> str:
+def _read_name(root: XmlNode, source: Source, builder: UrdfBuilder) -> str:
     name = root.take("name")
     if name:
         return name
@@ -72,7 +72,7 @@ def _read_name(root: Node, source: Source, builder: UrdfBuilder) -> str:
     return source.stem
 
 
-def _read_version(root: Node, builder: UrdfBuilder) -> None:
+def _read_version(root: XmlNode, builder: UrdfBuilder) -> None:
     version = root.attributes.get("version")
     if version is None:
         return
@@ -86,7 +86,7 @@ def _read_version(root: Node, builder: UrdfBuilder) -> None:
     builder.version = version
 
 
-def _check_templates(root: Node, builder: UrdfBuilder) -> None:
+def _check_templates(root: XmlNode, builder: UrdfBuilder) -> None:
     """Report once that the file was meant for xacro: templates in names, or xacro's elements."""
     name = next((key.name for key in (*builder.vertices, *builder.edges) if "${" in key.name or "$(" in key.name), None)
     tag = next((node.tag for node in root.children if node.tag.startswith("xacro:")), None)

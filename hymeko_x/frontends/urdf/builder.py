@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from hymeko_x.ir.notations import Notation
     from hymeko_x.ir.parts import Rgba
     from hymeko_x.ir.values import Vec3
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
     from hymeko_x.xml.unread import Unread
 
 E = TypeVar("E", bound=Enum)
 
 
-class Definition(Struct):
+class MaterialDefinition(Struct):
     """A material as far as it is known: colour, texture, and where in the file it is defined and used."""
 
     id: Id
@@ -56,7 +56,7 @@ class UrdfBuilder(Builder):
     joints: dict[str, Id] = field(default_factory=dict)
     meshes: dict[tuple[str, tuple[float, ...]], Id] = field(default_factory=dict)
     textures: dict[str, Id] = field(default_factory=dict)
-    materials: dict[str, list[Definition]] = field(default_factory=dict)
+    materials: dict[str, list[MaterialDefinition]] = field(default_factory=dict)
     actuators: dict[str, Id] = field(default_factory=dict)
     drives: dict[str, Id] = field(default_factory=dict)
     choices: dict[Notation[Any], dict[Id, Enum]] = field(default_factory=dict)
@@ -64,16 +64,16 @@ class UrdfBuilder(Builder):
     usual: dict[Notation[Any], Enum] = field(default_factory=dict)
     version: str = "1.0"
 
-    def own(self, node: Node, kind: str, name: str) -> Id:
+    def own(self, node: XmlNode, kind: str, name: str) -> Id:
         """A fresh id for a node, whose unread content belongs to it from now on."""
         node.owner = key = self.fresh(kind, name, node.origin)
         return key
 
-    def warn(self, code: Code, node: Node, message: str) -> None:
+    def warn(self, code: Code, node: XmlNode, message: str) -> None:
         """Report something odd about a node, and how it is read."""
         self.report.warn(code, message, node.origin, element=node.element)
 
-    def error(self, code: Code, node: Node, message: str) -> None:
+    def error(self, code: Code, node: XmlNode, message: str) -> None:
         """Report something wrong about a node, and what is used instead."""
         self.report.error(code, message, node.origin, element=node.element)
 
@@ -107,7 +107,7 @@ class UrdfBuilder(Builder):
             self.note(key, notations.OTHERWISE, tuple(sorted(habits)))
         return found
 
-    def close(self, node: Node) -> None:
+    def close(self, node: XmlNode) -> None:
         """Collect what is unread in a top-level element, and report children that it may have only once."""
         for member in self.unread.close(node):
             for child in member.unread_children():
@@ -130,7 +130,7 @@ class UrdfBuilder(Builder):
         return self.build(name, Provenance(words.FORMAT, file=file))
 
 
-def take_name(node: Node, kind: str, known: dict[str, Id], builder: UrdfBuilder) -> Id:
+def take_name(node: XmlNode, kind: str, known: dict[str, Id], builder: UrdfBuilder) -> Id:
     """The id of a link, joint or transmission from its name; a name that is missing or taken is reported."""
     name = node.take("name")
     report = builder.warn if known is builder.drives else builder.error  # nothing refers to a transmission
@@ -149,7 +149,7 @@ def take_name(node: Node, kind: str, known: dict[str, Id], builder: UrdfBuilder)
 # ---- poses -------------------------------------------------------------------------------------------------------------------
 
 
-def read_origin(node: Node, key: Id, builder: UrdfBuilder, *, turned: bool = True) -> Pose:
+def read_origin(node: XmlNode, key: Id, builder: UrdfBuilder, *, turned: bool = True) -> Pose:
     """The pose of the <origin> in a node of an element: position in m, fixed-axis roll-pitch-yaw in rad; the identity without one.
 
     ``turned`` false: there is nothing that could be turned, so that the angles stay as written.
@@ -172,7 +172,7 @@ def read_origin(node: Node, key: Id, builder: UrdfBuilder, *, turned: bool = Tru
     return found
 
 
-def _turned(origin: Node, xyz: Vec3, builder: UrdfBuilder) -> Pose:
+def _turned(origin: XmlNode, xyz: Vec3, builder: UrdfBuilder) -> Pose:
     rpy: Any = take_numbers(origin, "rpy", 3, builder, instead="0 0 0 is used") or ZERO
     if rpy == ZERO and builder.version != "1.0":
         quat = take_numbers(origin, "quat_xyzw", 4, builder, instead="no rotation is used")
@@ -185,7 +185,7 @@ def _turned(origin: Node, xyz: Vec3, builder: UrdfBuilder) -> Pose:
 # ---- numbers -----------------------------------------------------------------------------------------------------------------
 
 
-def take_numbers(node: Node, attribute: str, count: int, builder: UrdfBuilder, *, instead: str) -> tuple[float, ...] | None:
+def take_numbers(node: XmlNode, attribute: str, count: int, builder: UrdfBuilder, *, instead: str) -> tuple[float, ...] | None:
     """The ``count`` numbers of an attribute; None when it is missing or bad.
 
     A bad one is reported and not taken, so that it becomes an extra and is written back as it was; ``instead`` tells what
@@ -202,7 +202,7 @@ def take_numbers(node: Node, attribute: str, count: int, builder: UrdfBuilder, *
     return None
 
 
-def take_each_number(node: Node, attributes: Iterable[str], builder: UrdfBuilder, *, instead: str) -> list[float | None]:
+def take_each_number(node: XmlNode, attributes: Iterable[str], builder: UrdfBuilder, *, instead: str) -> list[float | None]:
     """The one number of each of these attributes; None where it is missing or bad. See :func:`take_numbers`."""
     found: list[float | None] = []
     there = node.attributes
@@ -218,12 +218,12 @@ def take_each_number(node: Node, attributes: Iterable[str], builder: UrdfBuilder
     return found
 
 
-def take_number(node: Node, attribute: str, builder: UrdfBuilder, *, instead: str) -> float | None:
+def take_number(node: XmlNode, attribute: str, builder: UrdfBuilder, *, instead: str) -> float | None:
     """The one number of an attribute; None when it is missing or bad. See :func:`take_numbers`."""
     return take_each_number(node, (attribute,), builder, instead=instead)[0]
 
 
-def _report_bad_numbers(node: Node, attribute: str, count: int, builder: UrdfBuilder, instead: str) -> None:
+def _report_bad_numbers(node: XmlNode, attribute: str, count: int, builder: UrdfBuilder, instead: str) -> None:
     text = node.attributes[attribute]
     expected = "one finite number" if count == 1 else f"{count} finite numbers separated by blanks"
     is_template = "${" in text or "$(" in text

@@ -19,18 +19,18 @@ from hymeko_x.xml.tree import read_numbers
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from hymeko_x.formats.urdf import JointType
+    from hymeko_x.formats.urdf import UrdfJointType
     from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.values import Vec3
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 _SINGLE = ((DofKind.HINGE,), (DofKind.SLIDE,))
 _BOUNDS = ("lower", "upper")
 _RATES = ("velocity", "effort", "acceleration", "jerk")
 
 
-def read_joints(root: Node, builder: UrdfBuilder) -> None:
+def read_joints(root: XmlNode, builder: UrdfBuilder) -> None:
     """Add all joints; a joint without two ends stays outside of the tree, as it was written."""
     waiting = []
     for node in root.take_children("joint"):
@@ -50,7 +50,7 @@ def read_joints(root: Node, builder: UrdfBuilder) -> None:
         builder.close(node)
 
 
-def _read_joint(node: Node, ends: tuple[Node, Node], builder: UrdfBuilder) -> Joint:
+def _read_joint(node: XmlNode, ends: tuple[XmlNode, XmlNode], builder: UrdfBuilder) -> Joint:
     key = take_name(node, "joint", builder.joints, builder)
     parent, child = [_take_link(node, end, builder) for end in ends]
     word = _read_type(node, builder)
@@ -65,7 +65,7 @@ def _read_joint(node: Node, ends: tuple[Node, Node], builder: UrdfBuilder) -> Jo
 # ---- ends and type -----------------------------------------------------------------------------------------------------------
 
 
-def _ends_of(joint: Node, builder: UrdfBuilder) -> tuple[Node, Node] | None:
+def _ends_of(joint: XmlNode, builder: UrdfBuilder) -> tuple[XmlNode, XmlNode] | None:
     """The elements that name the parent and the child of a joint; None, which is reported, where one is missing."""
     parent, child = joint.child("parent"), joint.child("child")
     if parent is not None and child is not None and "link" in parent.attributes and "link" in child.attributes:
@@ -78,7 +78,7 @@ def _ends_of(joint: Node, builder: UrdfBuilder) -> tuple[Node, Node] | None:
     return None
 
 
-def _take_link(joint: Node, end: Node, builder: UrdfBuilder) -> Id:
+def _take_link(joint: XmlNode, end: XmlNode, builder: UrdfBuilder) -> Id:
     """The link that an end of a joint names; one that is not defined is added, empty, so that the joint keeps its place."""
     end.taken = True
     name = end.take("link") or ""
@@ -94,7 +94,7 @@ def _take_link(joint: Node, end: Node, builder: UrdfBuilder) -> Id:
     return key
 
 
-def _read_type(node: Node, builder: UrdfBuilder) -> str:
+def _read_type(node: XmlNode, builder: UrdfBuilder) -> str:
     word = node.attributes.get("type")
     if word is not None and word in words.JOINT_TYPES:
         node.take("type")
@@ -109,7 +109,7 @@ def _read_type(node: Node, builder: UrdfBuilder) -> str:
 # ---- dofs --------------------------------------------------------------------------------------------------------------------
 
 
-def _read_dofs(node: Node, key: Id, word: str, builder: UrdfBuilder) -> tuple[Dof, ...]:
+def _read_dofs(node: XmlNode, key: Id, word: str, builder: UrdfBuilder) -> tuple[Dof, ...]:
     """The dofs of a joint. Elements without a meaning for its type (the axis of a fixed joint) become extras."""
     kinds = words.JOINT_TYPES[word].dofs
     if kinds in _SINGLE:
@@ -121,7 +121,7 @@ def _read_dofs(node: Node, key: Id, word: str, builder: UrdfBuilder) -> tuple[Do
     return tuple(Dof(kind) for kind in kinds)
 
 
-def _read_dof(node: Node, key: Id, kind: DofKind, known: JointType, builder: UrdfBuilder) -> Dof:
+def _read_dof(node: XmlNode, key: Id, kind: DofKind, known: UrdfJointType, builder: UrdfBuilder) -> Dof:
     axis, written = _read_axis(node, key, builder)
     limits = _read_limits(node, key, builder) if known.bounded else _read_open_limits(node, builder)
     damping, friction = _read_dynamics(node, key, builder)
@@ -137,7 +137,7 @@ def _read_dof(node: Node, key: Id, kind: DofKind, known: JointType, builder: Urd
     )
 
 
-def _read_axis(joint: Node, key: Id, builder: UrdfBuilder) -> tuple[Vec3, Written | None]:
+def _read_axis(joint: XmlNode, key: Id, builder: UrdfBuilder) -> tuple[Vec3, Written | None]:
     """The unit axis in the joint frame, and the numbers as written where they are others."""
     node = joint.take_child("axis")
     if node is None:
@@ -167,7 +167,7 @@ def _has_no_direction(text: str) -> bool:
     return bool(numbers) and not 1e-300 <= math.hypot(*(numbers or ())) < math.inf
 
 
-def _read_dynamics(joint: Node, key: Id, builder: UrdfBuilder) -> tuple[float, float]:
+def _read_dynamics(joint: XmlNode, key: Id, builder: UrdfBuilder) -> tuple[float, float]:
     node = joint.take_child("dynamics")
     if node is None:
         builder.follow(key, notations.DYNAMICS, follows=False)
@@ -178,7 +178,7 @@ def _read_dynamics(joint: Node, key: Id, builder: UrdfBuilder) -> tuple[float, f
     return damping, friction
 
 
-def _usually(default: float, node: Node, names: Sequence[str], key: Id, builder: UrdfBuilder) -> list[float]:
+def _usually(default: float, node: XmlNode, names: Sequence[str], key: Id, builder: UrdfBuilder) -> list[float]:
     """The number of each of these attributes, its default value where it is missing or bad."""
     values = []
     for name, found in zip(names, take_each_number(node, names, builder, instead=f"{default:g} is used"), strict=True):
@@ -192,7 +192,7 @@ def _usually(default: float, node: Node, names: Sequence[str], key: Id, builder:
 # ---- limits ------------------------------------------------------------------------------------------------------------------
 
 
-def _read_limits(joint: Node, key: Id, builder: UrdfBuilder) -> Limits:
+def _read_limits(joint: XmlNode, key: Id, builder: UrdfBuilder) -> Limits:
     """The limits of a joint for which URDF requires them. Without lower or upper they are 0, by the standard."""
     node = joint.take_child("limit")
     if node is None:
@@ -213,7 +213,7 @@ def _read_limits(joint: Node, key: Id, builder: UrdfBuilder) -> Limits:
     return limits
 
 
-def _read_open_limits(joint: Node, builder: UrdfBuilder) -> Limits:
+def _read_open_limits(joint: XmlNode, builder: UrdfBuilder) -> Limits:
     """The effort and velocity of a continuous joint; its lower and upper mean nothing and become extras."""
     node = joint.take_child("limit")
     if node is None:
@@ -224,13 +224,13 @@ def _read_open_limits(joint: Node, builder: UrdfBuilder) -> Limits:
     return limits
 
 
-def _take_limits(node: Node, names: Sequence[str], builder: UrdfBuilder) -> list[float | None]:
+def _take_limits(node: XmlNode, names: Sequence[str], builder: UrdfBuilder) -> list[float | None]:
     """The limits of these names; None for unlimited."""
     numbers = take_each_number(node, names, builder, instead="unlimited is used")
     return [None if number is None or words.is_no_limit(number) else number for number in numbers]
 
 
-def _check_limits(joint: Node, node: Node, limits: Limits, missing: list[str], builder: UrdfBuilder) -> None:
+def _check_limits(joint: XmlNode, node: XmlNode, limits: Limits, missing: list[str], builder: UrdfBuilder) -> None:
     if missing:
         message = f"{joint.subject}: <limit> has no {' and no '.join(missing)}; read as unlimited (urdfdom refuses the file as it is)"
         builder.warn(codes.MISSING_LIMIT, node, message)
@@ -245,7 +245,7 @@ def _check_limits(joint: Node, node: Node, limits: Limits, missing: list[str], b
 # ---- safety and calibration ------------------------------------------------------------------------------------------------------
 
 
-def _read_safety(joint: Node, key: Id, builder: UrdfBuilder) -> Safety | None:
+def _read_safety(joint: XmlNode, key: Id, builder: UrdfBuilder) -> Safety | None:
     node = joint.take_child("safety_controller")
     if node is None:
         return None
@@ -256,7 +256,7 @@ def _read_safety(joint: Node, key: Id, builder: UrdfBuilder) -> Safety | None:
     return Safety(*_usually(0.0, node, names, key, builder))
 
 
-def _read_calibration(joint: Node, builder: UrdfBuilder) -> Calibration | None:
+def _read_calibration(joint: XmlNode, builder: UrdfBuilder) -> Calibration | None:
     node = joint.take_child("calibration")
     if node is None:
         return None
@@ -271,7 +271,7 @@ def _read_calibration(joint: Node, builder: UrdfBuilder) -> Calibration | None:
 # ---- mimic ---------------------------------------------------------------------------------------------------------------------
 
 
-def _read_mimic(joint: Node, builder: UrdfBuilder) -> None:
+def _read_mimic(joint: XmlNode, builder: UrdfBuilder) -> None:
     """<mimic> as a coupling: q = offset + multiplier * q_leader. One that cannot work stays as it was written."""
     if not joint.has("mimic") or joint.owner is None:
         return
@@ -291,7 +291,7 @@ def _read_mimic(joint: Node, builder: UrdfBuilder) -> None:
     builder.origins[key] = node.origin
 
 
-def _mimic_problem(follower: Id, leader: Id | None, node: Node, builder: UrdfBuilder) -> str:
+def _mimic_problem(follower: Id, leader: Id | None, node: XmlNode, builder: UrdfBuilder) -> str:
     """Why a joint cannot mimic another one, or nothing."""
     name = node.attributes.get("joint")
     if name is None:
@@ -313,7 +313,7 @@ def _is_fixed(key: Id | None, builder: UrdfBuilder) -> bool:
 # ---- fixed joints ------------------------------------------------------------------------------------------------------------
 
 
-def _note_meaningless(joints: list[Node], builder: UrdfBuilder) -> None:
+def _note_meaningless(joints: list[XmlNode], builder: UrdfBuilder) -> None:
     """Note the meaningless elements that all fixed joints have, and at least half of them and two alike; others stay extras."""
     fixed = [node for node in joints if _is_fixed(node.owner, builder)]
     unread = {child.tag for node in fixed for child in node.children if not child.taken}
@@ -322,7 +322,7 @@ def _note_meaningless(joints: list[Node], builder: UrdfBuilder) -> None:
         builder.note(ROOT, notations.FIXED, usual)
 
 
-def _take_usual(fixed: list[Node], tag: str) -> str:
+def _take_usual(fixed: list[XmlNode], tag: str) -> str:
     """The most frequent text of this child, taken out of the joints that have it; empty where it is not frequent, or a joint has none."""
     found = [(child, f"<{tag}{attributes_text(child.attributes)}/>") for node in fixed if (child := _plain_child(node, tag))]
     votes = Counter(text for _, text in found)
@@ -335,7 +335,7 @@ def _take_usual(fixed: list[Node], tag: str) -> str:
     return text
 
 
-def _plain_child(node: Node, tag: str) -> Node | None:
+def _plain_child(node: XmlNode, tag: str) -> XmlNode | None:
     """The first such child, if it has nothing but attributes."""
     child = next((child for child in node.children if child.tag == tag and not child.taken), None)
     return None if child is None or child.children or child.text is not None else child

@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Geometry, Role
     from hymeko_x.ir.values import Tensor, Vec3
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 _NO_GEOMETRY = "the shape has no geometry"
 _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
-def read_link(node: Node, builder: UrdfBuilder) -> None:
+def read_link(node: XmlNode, builder: UrdfBuilder) -> None:
     """Add a link with its shapes: visuals first, then collisions, each in their order."""
     key = take_name(node, "body", builder.links, builder)
     inertial = _read_inertial(node, key, builder)
@@ -43,7 +43,7 @@ def read_link(node: Node, builder: UrdfBuilder) -> None:
     builder.close(node)
 
 
-def _read_shape(node: Node, role: Role, body: Id, builder: UrdfBuilder) -> None:
+def _read_shape(node: XmlNode, role: Role, body: Id, builder: UrdfBuilder) -> None:
     key = builder.own(node, "shape", f"{body.name}/{node.tag}")
     name = node.take("name")
     pose = read_origin(node, key, builder)
@@ -55,7 +55,7 @@ def _read_shape(node: Node, role: Role, body: Id, builder: UrdfBuilder) -> None:
 # ---- inertia -------------------------------------------------------------------------------------------------------------------
 
 
-def _read_inertial(link: Node, key: Id, builder: UrdfBuilder) -> Inertial | None:
+def _read_inertial(link: XmlNode, key: Id, builder: UrdfBuilder) -> Inertial | None:
     """Mass, centre of mass and tensor, turned from the axes of its <origin> into those of the body; None without one."""
     node = link.take_child("inertial")
     if node is None:
@@ -68,7 +68,7 @@ def _read_inertial(link: Node, key: Id, builder: UrdfBuilder) -> Inertial | None
     return Inertial(mass, frame.xyz, rotate_tensor(frame.quat, tensor), InertialWritten(frame, tensor))
 
 
-def _read_mass(inertial: Node, builder: UrdfBuilder) -> float | None:
+def _read_mass(inertial: XmlNode, builder: UrdfBuilder) -> float | None:
     node = inertial.take_child("mass")
     if node is None:
         _warn_missing(inertial, "mass", "its mass is unspecified", builder)
@@ -80,7 +80,7 @@ def _read_mass(inertial: Node, builder: UrdfBuilder) -> float | None:
     return mass
 
 
-def _read_tensor(inertial: Node, builder: UrdfBuilder) -> Tensor | None:
+def _read_tensor(inertial: XmlNode, builder: UrdfBuilder) -> Tensor | None:
     node = inertial.take_child("inertia")
     if node is None:
         _warn_missing(inertial, "inertia", "its tensor is unspecified (urdfdom then drops the mass as well)", builder)
@@ -94,7 +94,7 @@ def _read_tensor(inertial: Node, builder: UrdfBuilder) -> Tensor | None:
     return (xx, yy, zz, xy, xz, yz)
 
 
-def _warn_missing(node: Node, missing: str, instead: str, builder: UrdfBuilder) -> None:
+def _warn_missing(node: XmlNode, missing: str, instead: str, builder: UrdfBuilder) -> None:
     attribute = node.tag in ("mass", "inertia")
     code = codes.MISSING_ATTRIBUTE if attribute else codes.MISSING_PART
     builder.warn(code, node, f"{node.subject}: <{node.tag}> has no {missing if attribute else f'<{missing}>'}; {instead}")
@@ -103,7 +103,7 @@ def _warn_missing(node: Node, missing: str, instead: str, builder: UrdfBuilder) 
 # ---- geometry ----------------------------------------------------------------------------------------------------------------
 
 
-def _read_geometry(shape: Node, key: Id, builder: UrdfBuilder) -> tuple[Geometry, Id | None]:
+def _read_geometry(shape: XmlNode, key: Id, builder: UrdfBuilder) -> tuple[Geometry, Id | None]:
     """The geometry of a visual or collision, and its mesh. An unknown one is no shape, and an extra."""
     node = shape.take_child("geometry")
     if node is None:
@@ -127,7 +127,7 @@ def _read_geometry(shape: Node, key: Id, builder: UrdfBuilder) -> tuple[Geometry
     return geometry, None
 
 
-def _warn_empty(node: Node, problem: str, builder: UrdfBuilder) -> None:
+def _warn_empty(node: XmlNode, problem: str, builder: UrdfBuilder) -> None:
     message = f"{node.subject}: {problem}; {_NO_GEOMETRY}"
     builder.warn(codes.MISSING_PART, node, message)
 
@@ -135,7 +135,7 @@ def _warn_empty(node: Node, problem: str, builder: UrdfBuilder) -> None:
 # ---- one reader per geometry; None when its numbers cannot be read -----------------------------------------------------------
 
 
-def _read_box(node: Node, builder: UrdfBuilder) -> Geometry | None:
+def _read_box(node: XmlNode, builder: UrdfBuilder) -> Geometry | None:
     size = _sized(node, "size", 3, builder)
     if size is None:
         return None
@@ -143,23 +143,23 @@ def _read_box(node: Node, builder: UrdfBuilder) -> Geometry | None:
     return Box((x, y, z))
 
 
-def _read_sphere(node: Node, builder: UrdfBuilder) -> Geometry | None:
+def _read_sphere(node: XmlNode, builder: UrdfBuilder) -> Geometry | None:
     radius = _sized(node, "radius", 1, builder)
     return None if radius is None else Sphere(radius[0])
 
 
-def _read_cylinder(node: Node, builder: UrdfBuilder) -> Geometry | None:
+def _read_cylinder(node: XmlNode, builder: UrdfBuilder) -> Geometry | None:
     radius, length = _sized(node, "radius", 1, builder), _sized(node, "length", 1, builder)
     return None if radius is None or length is None else Cylinder(radius[0], length[0])
 
 
-def _read_capsule(node: Node, builder: UrdfBuilder) -> Geometry | None:
+def _read_capsule(node: XmlNode, builder: UrdfBuilder) -> Geometry | None:
     radius, length = _sized(node, "radius", 1, builder), _sized(node, "length", 1, builder)
     builder.follow(ROOT, notations.CAPSULE, follows=True)
     return None if radius is None or length is None else Capsule(radius[0], length[0])
 
 
-def _sized(node: Node, attribute: str, count: int, builder: UrdfBuilder) -> tuple[float, ...] | None:
+def _sized(node: XmlNode, attribute: str, count: int, builder: UrdfBuilder) -> tuple[float, ...] | None:
     """Numbers without which there is no geometry."""
     if attribute in node.attributes:
         return take_numbers(node, attribute, count, builder, instead=_NO_GEOMETRY)
@@ -168,7 +168,7 @@ def _sized(node: Node, attribute: str, count: int, builder: UrdfBuilder) -> tupl
     return None
 
 
-_READERS: Mapping[str, Callable[[Node, UrdfBuilder], Geometry | None]] = MappingProxyType(
+_READERS: Mapping[str, Callable[[XmlNode, UrdfBuilder], Geometry | None]] = MappingProxyType(
     {"box": _read_box, "cylinder": _read_cylinder, "sphere": _read_sphere, "capsule": _read_capsule}
 )
 _GEOMETRIES = ("mesh", *_READERS)
@@ -177,7 +177,7 @@ _GEOMETRIES = ("mesh", *_READERS)
 # ---- meshes ----------------------------------------------------------------------------------------------------------------------
 
 
-def _read_mesh(node: Node, shape: Id, builder: UrdfBuilder) -> Id:
+def _read_mesh(node: XmlNode, shape: Id, builder: UrdfBuilder) -> Id:
     """The mesh vertex of a file and scale; shapes that use the same ones share it."""
     uri = node.take("filename")
     if uri is None:
@@ -195,7 +195,7 @@ def _read_mesh(node: Node, shape: Id, builder: UrdfBuilder) -> Id:
     return key
 
 
-def _read_scale(node: Node, shape: Id, builder: UrdfBuilder) -> Vec3:
+def _read_scale(node: XmlNode, shape: Id, builder: UrdfBuilder) -> Vec3:
     one = read_numbers(node.attributes.get("scale", ""))
     if one is not None and len(one) == 1:
         node.take("scale")

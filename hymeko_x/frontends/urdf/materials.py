@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats.urdf import notations
 from hymeko_x.formats.urdf.notations import Defined
-from hymeko_x.frontends.urdf.builder import Definition, take_numbers
+from hymeko_x.frontends.urdf.builder import MaterialDefinition, take_numbers
 from hymeko_x.ir.mechanism import Id, layer_edge
 from hymeko_x.ir.parts import Material, Texture
 from hymeko_x.source import file_stem
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
     from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.parts import Rgba
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 Appearance = tuple["Rgba | None", "str | None"]
 """The colour and the texture file of a <material>."""
 
 
-def read_robot_material(root: Node, node: Node, builder: UrdfBuilder) -> None:
+def read_robot_material(root: XmlNode, node: XmlNode, builder: UrdfBuilder) -> None:
     """Add a material of robot level; one without a name, or one that is defined again alike, stays as it was written."""
     name = node.attributes.get("name")
     if not name:
@@ -49,7 +49,7 @@ def read_robot_material(root: Node, node: Node, builder: UrdfBuilder) -> None:
     builder.close(node)
 
 
-def read_shape_material(shape: Node, builder: UrdfBuilder) -> tuple[Rgba | None, Id | None]:
+def read_shape_material(shape: XmlNode, builder: UrdfBuilder) -> tuple[Rgba | None, Id | None]:
     """The colour of a shape's unnamed material, or the id of its named one."""
     node = shape.take_child("material")
     if node is None:
@@ -61,7 +61,7 @@ def read_shape_material(shape: Node, builder: UrdfBuilder) -> tuple[Rgba | None,
     return _read_unnamed(shape, node, builder)
 
 
-def _use(node: Node, name: str, builder: UrdfBuilder) -> Id:
+def _use(node: XmlNode, name: str, builder: UrdfBuilder) -> Id:
     appearance = _read_appearance(node, builder)
     definition = _resolve(node, name, appearance, builder)
     definition.uses += 1
@@ -70,7 +70,7 @@ def _use(node: Node, name: str, builder: UrdfBuilder) -> Id:
     return definition.id
 
 
-def _read_unnamed(shape: Node, node: Node, builder: UrdfBuilder) -> tuple[Rgba | None, Id | None]:
+def _read_unnamed(shape: XmlNode, node: XmlNode, builder: UrdfBuilder) -> tuple[Rgba | None, Id | None]:
     rgba, texture = _read_appearance(node, builder)
     if (rgba, texture) == (None, None):
         shape.leave(node)
@@ -81,11 +81,11 @@ def _read_unnamed(shape: Node, node: Node, builder: UrdfBuilder) -> tuple[Rgba |
     if texture is None:
         return rgba, None
     key = builder.names.take("material", str(shape.owner and shape.owner.name))
-    _add(Definition(key, rgba, texture, first_use=node.origin), None, builder)
+    _add(MaterialDefinition(key, rgba, texture, first_use=node.origin), None, builder)
     return None, key
 
 
-def _read_appearance(node: Node, builder: UrdfBuilder) -> Appearance:
+def _read_appearance(node: XmlNode, builder: UrdfBuilder) -> Appearance:
     rgba = texture = None
     color = node.take_child("color")
     if color is not None:
@@ -103,11 +103,11 @@ def _read_appearance(node: Node, builder: UrdfBuilder) -> Appearance:
     return (r, g, b, a), texture or None
 
 
-def _resolve(node: Node, name: str, appearance: Appearance, builder: UrdfBuilder) -> Definition:
+def _resolve(node: XmlNode, name: str, appearance: Appearance, builder: UrdfBuilder) -> MaterialDefinition:
     """The definition of this name with this appearance: the first one if it has none, a new one if it has another."""
     variants = builder.materials.setdefault(name, [])
     if not variants:
-        variants.append(Definition(_material_id(name, node, builder)))
+        variants.append(MaterialDefinition(_material_id(name, node, builder)))
     first = variants[0]
     if appearance == (None, None):
         return first
@@ -117,7 +117,7 @@ def _resolve(node: Node, name: str, appearance: Appearance, builder: UrdfBuilder
     same = next((definition for definition in variants if (definition.rgba, definition.texture) == appearance), None)
     if same is not None:
         return same
-    other = Definition(_material_id(name, node, builder), *appearance)
+    other = MaterialDefinition(_material_id(name, node, builder), *appearance)
     variants.append(other)
     builder.report.warn(
         codes.MATERIAL_REDEFINED,
@@ -129,7 +129,7 @@ def _resolve(node: Node, name: str, appearance: Appearance, builder: UrdfBuilder
     return other
 
 
-def _material_id(name: str, node: Node, builder: UrdfBuilder) -> Id:
+def _material_id(name: str, node: XmlNode, builder: UrdfBuilder) -> Id:
     key = builder.names.take("material", name)
     builder.origins[key] = node.origin
     return key
@@ -149,7 +149,7 @@ def finish_materials(builder: UrdfBuilder) -> None:
     _note_places(builder)
 
 
-def _add(definition: Definition, name: str | None, builder: UrdfBuilder) -> None:
+def _add(definition: MaterialDefinition, name: str | None, builder: UrdfBuilder) -> None:
     builder.vertices[definition.id] = Material(name, definition.rgba)
     if definition.texture is None:
         return
@@ -178,7 +178,7 @@ def _places(builder: UrdfBuilder) -> Iterator[tuple[Id, tuple[Defined, ...]]]:
                 builder.note(definition.id, notations.DEFINED, Defined.ROBOT)
 
 
-def _suiting(definition: Definition) -> tuple[Defined, ...]:
+def _suiting(definition: MaterialDefinition) -> tuple[Defined, ...]:
     """The places that write at least the definitions that the file has."""
     if definition.at_robot:
         return (Defined.BOTH,) if definition.inline else (Defined.ROBOT, Defined.BOTH) if not definition.uses else (Defined.ROBOT,)

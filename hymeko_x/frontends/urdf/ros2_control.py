@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Parameters
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
-def read_ros2_control(root: Node, builder: UrdfBuilder) -> None:
+def read_ros2_control(root: XmlNode, builder: UrdfBuilder) -> None:
     """Add an actuator for each command interface that says which one it is, and one for all others of a joint together."""
     for system in (node for node in root.children if node.tag == words.TAG):
         gears = dict(_gears(system))
@@ -30,7 +30,7 @@ def read_ros2_control(root: Node, builder: UrdfBuilder) -> None:
                 _read_combined(node, builder)
 
 
-def _read_joint(node: Node, gear: tuple[str, float | None], builder: UrdfBuilder) -> None:
+def _read_joint(node: XmlNode, gear: tuple[str, float | None], builder: UrdfBuilder) -> None:
     """Add the actuators of a joint's interfaces."""
     name, interfaces = node.attributes.get("name", ""), [child for child in node.children if child.tag == "command_interface"]
     plain = [child for child in interfaces if not _read_interface(child, name, builder)]
@@ -38,7 +38,7 @@ def _read_joint(node: Node, gear: tuple[str, float | None], builder: UrdfBuilder
         _read_commands(plain, name, gear, builder)
 
 
-def _gears(system: Node) -> Iterator[tuple[str, tuple[str, float | None]]]:
+def _gears(system: XmlNode) -> Iterator[tuple[str, tuple[str, float | None]]]:
     """Of each joint with a simple transmission in this system: the name of its actuator, and the reduction."""
     for transmission in (node for node in system.children if node.tag == "transmission"):
         joints, actuators = ([node for node in transmission.children if node.tag == tag] for tag in ("joint", "actuator"))
@@ -48,7 +48,7 @@ def _gears(system: Node) -> Iterator[tuple[str, tuple[str, float | None]]]:
             yield joints[0].attributes.get("name", ""), (actuators[0].attributes.get("name", ""), numbers[0] if numbers else None)
 
 
-def _read_commands(interfaces: list[Node], joint: str, gear: tuple[str, float | None], builder: UrdfBuilder) -> None:
+def _read_commands(interfaces: list[XmlNode], joint: str, gear: tuple[str, float | None], builder: UrdfBuilder) -> None:
     """The commands that the hardware takes for a joint, the first one with its parameters."""
     name, reduction = gear
     key = builder.fresh("actuator", name or joint, interfaces[0].origin)
@@ -58,7 +58,7 @@ def _read_commands(interfaces: list[Node], joint: str, gear: tuple[str, float | 
     builder.edges[builder.names.take("drive", key.name)] = Edge(Drive(words.TAG, commands), arcs)
 
 
-def _read_interface(node: Node, joint: str, builder: UrdfBuilder) -> bool:
+def _read_interface(node: XmlNode, joint: str, builder: UrdfBuilder) -> bool:
     """Add the actuator of a joint's interface that says which one it is; whether it does."""
     kind = _texts(node).get(words.TYPE, "")
     if kind and joint in builder.joints:
@@ -66,7 +66,7 @@ def _read_interface(node: Node, joint: str, builder: UrdfBuilder) -> bool:
     return bool(kind)
 
 
-def _drive(node: Node, default: str, target: Id, builder: UrdfBuilder) -> None:
+def _drive(node: XmlNode, default: str, target: Id, builder: UrdfBuilder) -> None:
     """Add the actuator of an interface, of this name by default, and its drive."""
     texts = _texts(node)
     kind = texts.pop(words.TYPE)
@@ -79,7 +79,7 @@ def _drive(node: Node, default: str, target: Id, builder: UrdfBuilder) -> None:
     builder.edges[builder.names.take("drive", key.name)] = Edge(Drive(), arcs)
 
 
-def _read_combined(node: Node, builder: UrdfBuilder) -> None:
+def _read_combined(node: XmlNode, builder: UrdfBuilder) -> None:
     """Add the combination of joints that a <gpio> names, and the actuators of its interfaces; other ones stay extras alone."""
     texts = _texts(node)
     joints = texts.get(words.JOINTS, "").split()
@@ -95,7 +95,7 @@ def _read_combined(node: Node, builder: UrdfBuilder) -> None:
         _drive(interface, name, key, builder)
 
 
-def _texts(node: Node) -> dict[str, str]:
+def _texts(node: XmlNode) -> dict[str, str]:
     return {child.attributes.get("name", ""): (child.text or "").strip() for child in node.children if child.tag == "param"}
 
 

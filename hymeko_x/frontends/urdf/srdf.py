@@ -23,7 +23,7 @@ from hymeko_x.xml.tree import read_numbers
 if TYPE_CHECKING:
     from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.mechanism import RobotArc
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
 def read_srdf(source: Source, builder: UrdfBuilder) -> list[Extra]:
@@ -51,14 +51,14 @@ def read_srdf(source: Source, builder: UrdfBuilder) -> list[Extra]:
     return [extra for node in nodes if node is not floating for extra in _read(node, builder)]
 
 
-def _read(node: Node, builder: UrdfBuilder) -> list[Extra]:
+def _read(node: XmlNode, builder: UrdfBuilder) -> list[Extra]:
     read = {"disable_collisions": _read_exclusion, "group_state": _read_pose}.get(node.tag)
     if read is not None and read(node, builder):
         return []
     return [Extra(words.FORMAT, srdf.PATH, markup(node))]
 
 
-def _read_exclusion(node: Node, builder: UrdfBuilder) -> bool:
+def _read_exclusion(node: XmlNode, builder: UrdfBuilder) -> bool:
     """Two links that never touch; whether both are there."""
     links = [builder.links.get(node.attributes.get(name, "")) for name in ("link1", "link2")]
     arcs: tuple[RobotArc, ...] = tuple([Arc(link, 0) for link in links if link is not None])
@@ -71,7 +71,7 @@ def _read_exclusion(node: Node, builder: UrdfBuilder) -> bool:
     return True
 
 
-def _read_pose(node: Node, builder: UrdfBuilder) -> bool:
+def _read_pose(node: XmlNode, builder: UrdfBuilder) -> bool:
     """A named pose of a group; whether each of its joints is there with numbers."""
     values: list[RobotArc] = []
     for child in node.children:
@@ -86,14 +86,14 @@ def _read_pose(node: Node, builder: UrdfBuilder) -> bool:
     return True
 
 
-def _floats(node: Node, builder: UrdfBuilder) -> bool:
+def _floats(node: XmlNode, builder: UrdfBuilder) -> bool:
     """Whether it is a floating joint from the world to a link: then the robot floats. Others are only frames of a planner."""
     given = node.attributes
     is_known = given.get("child_link") in builder.links and given.get("name") not in builder.joints
     return node.tag == "virtual_joint" and is_known and (given.get("type"), given.get("parent_frame")) == ("floating", WORLD.name)
 
 
-def _add_virtual_joint(node: Node, builder: UrdfBuilder) -> None:
+def _add_virtual_joint(node: XmlNode, builder: UrdfBuilder) -> None:
     key = builder.fresh("joint", node.attributes.get("name", ""), node.origin)
     builder.vertices.setdefault(WORLD, World())
     builder.edges[key] = joint_edge(Joint((Dof(DofKind.FREE, Z),)), WORLD, builder.links[node.attributes["child_link"]])

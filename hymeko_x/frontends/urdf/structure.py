@@ -11,10 +11,10 @@ from hymeko_x.ir.parts import Body, Joint
 if TYPE_CHECKING:
     from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 
-def check_structure(root: Node, builder: UrdfBuilder, *, is_whole: bool) -> None:
+def check_structure(root: XmlNode, builder: UrdfBuilder, *, is_whole: bool) -> None:
     """Report everything that keeps the links and joints from being one tree. Linear, not recursive.
 
     ``is_whole``: nothing is kept for the file, which may be all of a system without links.
@@ -52,7 +52,7 @@ def _check_parents(parents: dict[Id, list[Id]], builder: UrdfBuilder) -> None:
         )
 
 
-def _check_roots(root: Node, roots: list[Id], builder: UrdfBuilder) -> None:
+def _check_roots(root: XmlNode, roots: list[Id], builder: UrdfBuilder) -> None:
     if len(roots) < 2:
         return
     names = listed([f"'{body.name}'" for body in roots], 5)

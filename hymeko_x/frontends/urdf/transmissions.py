@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Parameters
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import XmlNode
 
 _REDUCTION = "mechanicalReduction"
 
 
-def read_transmission(node: Node, builder: UrdfBuilder) -> None:
+def read_transmission(node: XmlNode, builder: UrdfBuilder) -> None:
     """Add a transmission with its actuators."""
     key = take_name(node, "drive", builder.drives, builder)
     kind = _read_kind(node, key, builder)
@@ -42,7 +42,7 @@ def read_transmission(node: Node, builder: UrdfBuilder) -> None:
     builder.close(node)
 
 
-def _read_kind(node: Node, key: Id, builder: UrdfBuilder) -> str:
+def _read_kind(node: XmlNode, key: Id, builder: UrdfBuilder) -> str:
     """The transmission's type: a child with text (ROS 1), or an attribute (PR2)."""
     child = node.take_child("type")
     kind = child.take_text() if child is not None else node.take("type")
@@ -51,7 +51,7 @@ def _read_kind(node: Node, key: Id, builder: UrdfBuilder) -> str:
     return kind or ""
 
 
-def _is_known(transmission: Node, joint: Node, builder: UrdfBuilder) -> bool:
+def _is_known(transmission: XmlNode, joint: XmlNode, builder: UrdfBuilder) -> bool:
     """Whether the joint exists; a reference that leads nowhere stays as it was written."""
     name = joint.attributes.get("name", "")
     if name in builder.joints:
@@ -62,7 +62,7 @@ def _is_known(transmission: Node, joint: Node, builder: UrdfBuilder) -> bool:
     return False
 
 
-def _is_named(transmission: Node, actuator: Node, builder: UrdfBuilder) -> bool:
+def _is_named(transmission: XmlNode, actuator: XmlNode, builder: UrdfBuilder) -> bool:
     if actuator.attributes.get("name"):
         return True
     message = f"{transmission.subject} has an <actuator> without a name; it is kept as written"
@@ -74,7 +74,7 @@ def _is_named(transmission: Node, actuator: Node, builder: UrdfBuilder) -> bool:
 # ---- reduction ---------------------------------------------------------------------------------------------------------------
 
 
-def _take_reduction(node: Node) -> float | None:
+def _take_reduction(node: XmlNode) -> float | None:
     """The number in <mechanicalReduction>; one that cannot be read stays as it was written."""
     child = node.take_child(_REDUCTION)
     if child is None:
@@ -86,7 +86,9 @@ def _take_reduction(node: Node) -> float | None:
     return numbers[0]
 
 
-def _simple_reductions(node: Node, key: Id, actuator: Node, joint: Node, builder: UrdfBuilder) -> tuple[float | None, float | None]:
+def _simple_reductions(
+    node: XmlNode, key: Id, actuator: XmlNode, joint: XmlNode, builder: UrdfBuilder
+) -> tuple[float | None, float | None]:
     """The weights of actuator and joint in a simple transmission: a single reduction is the joint's, wherever it is written."""
     found = {"actuator": _take_reduction(actuator), "joint": _take_reduction(joint)}
     if found["actuator"] is None and found["joint"] is None:
@@ -101,13 +103,13 @@ def _simple_reductions(node: Node, key: Id, actuator: Node, joint: Node, builder
 # ---- arcs --------------------------------------------------------------------------------------------------------------------
 
 
-def _actuator_arc(node: Node, weight: float | None, builder: UrdfBuilder) -> RobotArc:
+def _actuator_arc(node: XmlNode, weight: float | None, builder: UrdfBuilder) -> RobotArc:
     role = _take_role(node)
     part = Actuator("transmission", _take_parameters(node))
     return Arc(_actuator(node, part, builder), 1, None if weight is None else (weight,), role)
 
 
-def _actuator(node: Node, part: Actuator, builder: UrdfBuilder) -> Id:
+def _actuator(node: XmlNode, part: Actuator, builder: UrdfBuilder) -> Id:
     """The vertex of an actuator; transmissions with the same one, described alike, share it."""
     name = node.take("name") or ""
     known = builder.actuators.get(name)
@@ -123,17 +125,17 @@ def _actuator(node: Node, part: Actuator, builder: UrdfBuilder) -> Id:
     return key
 
 
-def _joint_arc(node: Node, weight: float | None, builder: UrdfBuilder) -> RobotArc:
+def _joint_arc(node: XmlNode, weight: float | None, builder: UrdfBuilder) -> RobotArc:
     joint = builder.joints[node.take("name") or ""]
     return Arc(joint, -1, None if weight is None else (weight,), _take_role(node))
 
 
-def _take_role(node: Node) -> str:
+def _take_role(node: XmlNode) -> str:
     child = node.take_child("role")
     return "" if child is None else child.take_text()
 
 
-def _take_parameters(node: Node) -> Parameters:
+def _take_parameters(node: XmlNode) -> Parameters:
     """The children of an element that contain nothing but text, in their order; numbers become numbers."""
     found: list[tuple[str, float | str | tuple[float, ...]]] = []
     for child in node.unread_children():

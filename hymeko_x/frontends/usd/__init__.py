@@ -28,7 +28,7 @@ from hymeko_x.frontends.usd.joints import DofRef, ReadJoint, dof_refs, read_join
 from hymeko_x.frontends.usd.materials import read_material
 from hymeko_x.frontends.usd.mounts import read_camera, read_light, read_site
 from hymeko_x.frontends.usd.shapes import is_shape, read_shape
-from hymeko_x.frontends.usd.stage import Scene, open_scene
+from hymeko_x.frontends.usd.stage import OpenStage, open_scene
 from hymeko_x.frontends.usd.tendons import read_tendons
 from hymeko_x.frontends.usd.transforms import check_ops
 from hymeko_x.frontends.usd.trees import build_trees, note_poses
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 
 def read(source: Source, report: Report) -> Reading:
-    """The mechanism that a USD file describes, with everything that it refers to composed, and the residue that it carries.
+    """The mechanism that a USD file describes, with everything that it refers to composed, and the residue that it contains.
 
     Raises: Refusal with HX001 (USD cannot read it), HX007 (too large).
     """
@@ -68,8 +68,8 @@ def read(source: Source, report: Report) -> Reading:
         return Reading(_finished(scene, builder, is_whole=source.is_whole(residue)), residue)
 
 
-def _take_residue(scene: Scene) -> str:
-    """The residue that the root layer carries, out of its custom data."""
+def _take_residue(scene: OpenStage) -> str:
+    """The residue that the root layer contains, out of its custom data."""
     text = scene.stage.GetRootLayer().customLayerData.get(words.RESIDUE)
     if not isinstance(text, str):
         return ""
@@ -78,7 +78,7 @@ def _take_residue(scene: Scene) -> str:
     return text
 
 
-def _prims(scene: Scene) -> list[Prim]:
+def _prims(scene: OpenStage) -> list[Prim]:
     """All prims in stage order, without the groups that the writer makes for prims of its own."""
     return [prim for prim in scene.prims.values() if prim.is_real and f"{words.PREFIX}scope" not in prim.types]
 
@@ -149,7 +149,7 @@ def _is_fixed(prim: Prim) -> bool:
     return prim.value("physics:rigidBodyEnabled") is False or prim.value("physics:kinematicEnabled") is True
 
 
-def _finished(scene: Scene, builder: UsdBuilder, *, is_whole: bool) -> Mechanism:
+def _finished(scene: OpenStage, builder: UsdBuilder, *, is_whole: bool) -> Mechanism:
     default = scene.stage.GetDefaultPrim()
     first = next(iter(builder.bodies), "")
     root = default or scene.stage.GetPrimAtPath("/" + first.split("/")[1] if first else "/")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Code, Report
     from hymeko_x.frontends.usd.places import Lines
     from hymeko_x.frontends.usd.prims import Prim
-    from hymeko_x.frontends.usd.stage import Scene
+    from hymeko_x.frontends.usd.stage import OpenStage
     from hymeko_x.frontends.usd.transforms import Transform
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.source import Source
@@ -50,7 +50,7 @@ class UsdBuilder(Builder, dict=True):
 
     source: Source
     report: Report
-    scene: Scene
+    scene: OpenStage
     bodies: dict[str, Id] = field(default_factory=dict)
     elements: dict[str, list[Id]] = field(default_factory=dict)
     read_names: dict[str, set[str]] = field(default_factory=dict)

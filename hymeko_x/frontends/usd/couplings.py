@@ -68,7 +68,7 @@ def _follows(prim: Prim) -> bool:
     return any(schema in (_NEWTON.schema, _NEUTRAL.schema, EQUALITY) for schema in prim.schemas)
 
 
-def _polynomial(prim: Prim, dof: Dof, names: words.Mimic, builder: UsdBuilder) -> tuple[float, ...]:
+def _polynomial(prim: Prim, dof: Dof, names: words.MimicSchema, builder: UsdBuilder) -> tuple[float, ...]:
     unit = math.pi / 180.0 if dof.kind is DofKind.HINGE else builder.scene.metres
     authored, factor = builder.get(prim, names.offset), builder.get(prim, names.factor)
     older = builder.scene.metres if dof.kind is DofKind.SLIDE else 1.0

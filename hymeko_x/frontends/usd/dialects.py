@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x.frontends.usd.bodies import BODY, body_at
-from hymeko_x.frontends.usd.joints import End, ReadJoint
+from hymeko_x.frontends.usd.joints import JointEnd, ReadJoint
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Coupling, DofKind
@@ -158,7 +158,7 @@ def _from_bare_link(joint: ReadJoint, links: set[Id], prims: dict[Id, Prim], bui
         return joint
     start = builder.transforms.of(prims[first.body]).pose if first.body in prims else IDENTITY
     pose = compose(inverse(builder.transforms.of(above[0]).pose), compose(start, first.pose))
-    return replace(joint, ends=(End(above[1], pose), second))
+    return replace(joint, ends=(JointEnd(above[1], pose), second))
 
 
 def _fixed_above(prim: Prim, builder: UsdBuilder) -> ReadJoint:
@@ -171,4 +171,4 @@ def _fixed_above(prim: Prim, builder: UsdBuilder) -> ReadJoint:
         start, parent = builder.transforms.of(above[0]).pose, above[1]
     pose = compose(inverse(start), builder.transforms.of(prim).pose)
     key = builder.new_id(prim, "joint", body.name + FIXED_SUFFIX)
-    return ReadJoint(prim, key, (), (End(parent, pose), End(body, IDENTITY)), is_enabled=True, is_excluded=False)
+    return ReadJoint(prim, key, (), (JointEnd(parent, pose), JointEnd(body, IDENTITY)), is_enabled=True, is_excluded=False)

@@ -30,7 +30,7 @@ _UNLIMITED = 1e6
 _NEWTON = ("armature", "damping", "friction", "velocityLimit")
 
 
-class End(Struct, frozen=True):
+class JointEnd(Struct, frozen=True):
     """One side of a joint: the body (or the world) and the joint's frame in it."""
 
     body: Id
@@ -46,7 +46,7 @@ class ReadJoint(Struct, frozen=True):
     prim: Prim
     id: Id
     dofs: tuple[Dof, ...]
-    ends: tuple[End, End]
+    ends: tuple[JointEnd, JointEnd]
     is_enabled: bool
     is_excluded: bool
     merged: tuple[Prim, ...] = ()
@@ -90,14 +90,14 @@ def _mark_schemas(prim: Prim, builder: UsdBuilder) -> None:
 # ---- ends --------------------------------------------------------------------------------------------------------------------
 
 
-def _end(prim: Prim, side: int, builder: UsdBuilder) -> End | None:
+def _end(prim: Prim, side: int, builder: UsdBuilder) -> JointEnd | None:
     """The joint's frame in the body of one side; without a body in the world, in the frame of whatever prim is named."""
     position = builder.get(prim, f"physics:localPos{side}") or ZERO
     quat = builder.get(prim, f"physics:localRot{side}") or NO_ROTATION
     local = Pose(position, rotation_of(quat))
     targets = prim.targets(f"physics:body{side}")
     if not targets:
-        return End(WORLD, _in_frame(decomposed(builder.scene.world), local))
+        return JointEnd(WORLD, _in_frame(decomposed(builder.scene.world), local))
     target = builder.scene.prims.get(targets[0])
     if target is None:
         message = f"joint '{prim.path}': body{side} is '{targets[0]}', which does not exist; the joint is kept as written"
@@ -106,14 +106,14 @@ def _end(prim: Prim, side: int, builder: UsdBuilder) -> End | None:
     found = body_at(target, builder)
     frame = _in_frame(builder.transforms.of(target), local)
     if found is None:
-        return End(WORLD, frame)
+        return JointEnd(WORLD, frame)
     body, key = found
     if body is target:
-        return End(key, Pose(_stretched(position, builder.transforms.of(body).scale), local.quat))
-    return End(key, compose(inverse(builder.transforms.of(body).pose), frame))
+        return JointEnd(key, Pose(_stretched(position, builder.transforms.of(body).scale), local.quat))
+    return JointEnd(key, compose(inverse(builder.transforms.of(body).pose), frame))
 
 
-def _note_ground(prim: Prim, side: int, end: End, key: Id, builder: UsdBuilder) -> None:
+def _note_ground(prim: Prim, side: int, end: JointEnd, key: Id, builder: UsdBuilder) -> None:
     """Keep which prim stood for the world, where it is a group above bodies, which will be written without a place of its own."""
     targets = prim.targets(f"physics:body{side}") if end.body == WORLD else []
     if targets and any(path.startswith(f"{targets[0]}/") for path in builder.bodies):

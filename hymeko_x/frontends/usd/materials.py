@@ -16,7 +16,7 @@ from hymeko_x.ir.parts import Material, Texture
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
-    from hymeko_x.frontends.usd.stage import Scene
+    from hymeko_x.frontends.usd.stage import OpenStage
     from hymeko_x.ir.mechanism import Id
 
 PREVIEW = "UsdPreviewSurface"
@@ -155,7 +155,7 @@ def _take_network(prim: Prim, builder: UsdBuilder) -> None:
 # ---- bindings ----------------------------------------------------------------------------------------------------------------------
 
 
-def bound_to(prim: Prim, scene: Scene, purpose: str = "") -> Prim | None:
+def bound_to(prim: Prim, scene: OpenStage, purpose: str = "") -> Prim | None:
     """The prim of the material that a prim is bound to for a purpose (empty: for all), None without one.
 
     USD computes it by all rules of inheritance, strength and collections.

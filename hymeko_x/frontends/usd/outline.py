@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.outline import Block, Field, Outline, Style, TextFile
+from hymeko_x.outline import BlockStyle, Outline, OutlineBlock, OutlineField, TextFile
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 NAME = "name of the prim"
 METADATA = "metadata"
 """The tag of the block that the metadata of a prim or of the layer are."""
-STYLE = Style("\n{", "\n}", rb"[ \t]*(?:#[^\n]*)?", has_lines=True, derived=frozenset({"extent"}), head_tag=METADATA)
+STYLE = BlockStyle("\n{", "\n}", rb"[ \t]*(?:#[^\n]*)?", has_lines=True, derived=frozenset({"extent"}), head_tag=METADATA)
 
 _TOKEN = re.compile(
     rb'"""(?s:.)*?"""|\'\'\'(?s:.)*?\'\'\'|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)*\'|@@@(?s:.)*?@@@|@[^@\n]*@|<[^>\n]*>|#[^\n]*'
@@ -38,7 +38,7 @@ def outline(source: Source, report: Report) -> Outline:
     data = source.data
     if not data.startswith(b"#usda") and not data.startswith(b"#sdf"):
         raise refuse(codes.UNKNOWN_FORMAT, "the layer is binary: its text cannot be edited", Origin(source.name))
-    whole = Block("", "", source.name, 0, len(data), 0, 0, (0, len(data)))
+    whole = OutlineBlock("", "", source.name, 0, len(data), 0, 0, (0, len(data)))
     _Reader(data, source.name).read(whole)
     return Outline(whole, {source.name: TextFile(source.name, data)}, source.name, STYLE)
 
@@ -49,7 +49,7 @@ class _Reader:
     def __init__(self, data: bytes, file: str) -> None:
         self.data, self.file, self.at = data, file, 0
 
-    def read(self, whole: Block) -> None:
+    def read(self, whole: OutlineBlock) -> None:
         """Read everything into the block of the whole layer."""
         open_blocks = [whole]
         while True:
@@ -72,7 +72,7 @@ class _Reader:
     def _broken(self, why: str) -> Exception:
         return refuse(codes.UNKNOWN_FORMAT, f"the text cannot be edited: {why}", Origin(self.file, self.data.count(b"\n", 0, self.at) + 1))
 
-    def _close(self, block: Block) -> None:
+    def _close(self, block: OutlineBlock) -> None:
         assert block.inside is not None
         block.inside = block.inside[0], self.at
         self.at += 1
@@ -85,33 +85,33 @@ class _Reader:
 
     # ---- blocks --------------------------------------------------------------------------------------------------------------
 
-    def _prim(self) -> Block | None:
+    def _prim(self) -> OutlineBlock | None:
         found = _PRIM.match(self.data, self.at)
         if found is None:
             return None
         name = found[3][1:-1].decode("utf-8", "replace")
-        fields = {NAME: Field(name, found.start(3), found.end(3), found.start(3) + 1, found.end(3) - 1)}
+        fields = {NAME: OutlineField(name, found.start(3), found.end(3), found.start(3) + 1, found.end(3) - 1)}
         self.at = found.end()
         return self._opened((found[2] or found[1]).decode(), name, found.start(), fields)
 
-    def _opened(self, tag: str, name: str, start: int, fields: dict[str, Field]) -> Block:
+    def _opened(self, tag: str, name: str, start: int, fields: dict[str, OutlineField]) -> OutlineBlock:
         """A block whose head has been read; metadata in its head become a block in it."""
         self._skip()
         metadata = None
         if self.data[self.at : self.at + 1] == b"(":
-            metadata = Block(METADATA, "", self.file, self.at, self.at, self.at + 1, self.at + 1, (self.at + 1, self.at + 1))
+            metadata = OutlineBlock(METADATA, "", self.file, self.at, self.at, self.at + 1, self.at + 1, (self.at + 1, self.at + 1))
             self.at += 1
             self._fields_of(metadata)
             self._skip()
         if self.data[self.at : self.at + 1] != b"{":
             raise self._broken("a prim has no content in braces")
         self.at += 1
-        block = Block(tag, name, self.file, start, self.at, self.at, self.at, (self.at, self.at), fields)
+        block = OutlineBlock(tag, name, self.file, start, self.at, self.at, self.at, (self.at, self.at), fields)
         if metadata is not None:
             block.add(metadata)
         return block
 
-    def _fields_of(self, block: Block) -> None:
+    def _fields_of(self, block: OutlineBlock) -> None:
         """Read the fields of metadata up to their closing parenthesis."""
         while True:
             self._skip()
@@ -122,14 +122,14 @@ class _Reader:
                 return
             self._field(block)
 
-    def _metadata(self, whole: Block | None) -> Block | None:
+    def _metadata(self, whole: OutlineBlock | None) -> OutlineBlock | None:
         """The metadata of the layer, which stand alone."""
         if whole is None or self.data[self.at : self.at + 1] != b"(":
             return None
         self.at += 1
-        return Block(METADATA, "", self.file, self.at - 1, self.at, self.at, self.at, (self.at, self.at))
+        return OutlineBlock(METADATA, "", self.file, self.at - 1, self.at, self.at, self.at, (self.at, self.at))
 
-    def _variants(self, block: Block) -> Block | None:
+    def _variants(self, block: OutlineBlock) -> OutlineBlock | None:
         """A set of variants, or a variant in one."""
         found = _VARIANT_SET.match(self.data, self.at)
         tag = "variantSet" if found is not None else "variant"
@@ -141,7 +141,7 @@ class _Reader:
 
     # ---- fields --------------------------------------------------------------------------------------------------------------
 
-    def _field(self, block: Block) -> None:
+    def _field(self, block: OutlineBlock) -> None:
         """Read a statement: up to the end of its line, or further where brackets are open."""
         start, words, value = self.at, b"", None
         while self.at < len(self.data):
@@ -161,7 +161,7 @@ class _Reader:
         first, last = value or (end, end)
         before = len(self.data[:start].rstrip()) if self.data[max(start - 1, 0) : start].isspace() else start
         text = self.data[first:last].decode("utf-8", "replace")
-        block.fields[words.decode("utf-8", "replace")] = Field(text, before, end, first, last)
+        block.fields[words.decode("utf-8", "replace")] = OutlineField(text, before, end, first, last)
 
     def _token(self) -> bytes:
         found = _TOKEN.match(self.data, self.at)

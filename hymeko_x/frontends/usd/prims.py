@@ -68,7 +68,7 @@ class Prim(Struct, eq=False):
     schemas: tuple[str, ...]
     spec: Any
     parent: Prim | None
-    scene: Layer
+    scene: UsdLayer
     metadata: tuple[str, ...]
     properties: tuple[str, ...]
     types: dict[str, str]
@@ -139,7 +139,7 @@ class Prim(Struct, eq=False):
             prim = prim.parent
 
 
-class Layer(Struct, eq=False):
+class UsdLayer(Struct, eq=False):
     """All prims of a layer by path, parents first. ``has_unknown_types``: some attribute has a type that USD cannot read.
 
     ``stage`` is set when the layer is opened as one.
@@ -163,9 +163,9 @@ class Layer(Struct, eq=False):
         self.stage = None
 
 
-def read_layer(layer: Any, most: int) -> Layer | None:
+def read_layer(layer: Any, most: int) -> UsdLayer | None:
     """Every prim of a layer; None where there are more than ``most``. Not recursive."""
-    found = Layer(is_animated=bool(layer.ListAllTimeSamples()))
+    found = UsdLayer(is_animated=bool(layer.ListAllTimeSamples()))
     names = _Names()
     top = _children(layer.pseudoRoot, layer.pseudoRoot.ListInfoKeys(), names)
     stack: list[tuple[str, Prim | None]] = [(f"/{name}", None) for name in reversed(top)]
@@ -194,7 +194,7 @@ class _Names(Struct):
         return self.known.setdefault(name, name)
 
 
-def _read_prim(spec: Any, path: str, parent: Prim | None, scene: Layer, names: _Names) -> Prim:
+def _read_prim(spec: Any, path: str, parent: Prim | None, scene: UsdLayer, names: _Names) -> Prim:
     authored = tuple(map(names.one, spec.ListInfoKeys()))
     schemas = tuple(map(names.one, spec.GetInfo("apiSchemas").GetAppliedItems())) if "apiSchemas" in authored else ()
     layer = spec.layer

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from hymeko_x.diagnostics import Report
-    from hymeko_x.frontends.usd.prims import Layer, Prim
+    from hymeko_x.frontends.usd.prims import Prim, UsdLayer
     from hymeko_x.source import Source
 
 MOST_PRIMS = 2_000_000
@@ -30,7 +30,7 @@ _MOST_UNIT = 1e12
 MOST_NESTED_INSTANCES = 32
 
 
-class Scene(Struct, frozen=True):
+class OpenStage(Struct, frozen=True):
     """An open stage in its own units; ``world`` turns its world into metres with z up; ``folder`` is where its layers lie.
 
     ``layer`` is self-contained, and ``prims`` are its prims by path.
@@ -46,7 +46,7 @@ class Scene(Struct, frozen=True):
 
 
 @contextmanager
-def open_scene(source: Source, report: Report) -> Iterator[Scene]:
+def open_scene(source: Source, report: Report) -> Iterator[OpenStage]:
     """The composed stage of a source, with every instance expanded; everything is gone after the block.
 
     Raises: Refusal with HX001 (USD cannot read it, which it may find out only in the block), HX007 (too large).
@@ -63,7 +63,7 @@ def open_scene(source: Source, report: Report) -> Iterator[Scene]:
 
 
 @contextmanager
-def _opened(main: str, base: str, source: Source, report: Report) -> Iterator[Scene]:
+def _opened(main: str, base: str, source: Source, report: Report) -> Iterator[OpenStage]:
     """The stage whose first layer was laid out at ``main``, in the folder ``base``."""
     layers = _gather(main, base, source, report)
     found = _read_plain(layers, source, report)
@@ -85,7 +85,7 @@ def _opened(main: str, base: str, source: Source, report: Report) -> Iterator[Sc
     turn = Gf.Rotation(Gf.Vec3d(1, 0, 0), 90.0 if up == UsdGeom.Tokens.y else 0.0)
     world = Gf.Matrix4d().SetScale(metres) * Gf.Matrix4d().SetRotate(turn)
     try:
-        yield Scene(stage, found.prims, world, kilograms, metres, base, flat)
+        yield OpenStage(stage, found.prims, world, kilograms, metres, base, flat)
     finally:
         found.close()
         del stage, layers, flat
@@ -109,7 +109,7 @@ def _composed(main: str, source: Source) -> Any:
 _ARCS = frozenset(("references", "payload", "inheritPaths", "specializes", "variantSetNames", "instanceable"))
 
 
-def _read_plain(layers: list[Any], source: Source, report: Report) -> Layer | None:
+def _read_plain(layers: list[Any], source: Source, report: Report) -> UsdLayer | None:
     """The prims of a self-contained layer, which composing does not change; None where other layers or arcs contribute."""
     root = layers[0]
     if len(layers) > 1 or root.subLayerPaths or root.relocates or source.variants:
@@ -123,7 +123,7 @@ def _read_plain(layers: list[Any], source: Source, report: Report) -> Layer | No
     return _read_layer(root, source)
 
 
-def _read_layer(layer: Any, source: Source) -> Layer:
+def _read_layer(layer: Any, source: Source) -> UsdLayer:
     found = read_layer(layer, MOST_PRIMS)
     if found is None:
         raise refuse(codes.TOO_LARGE, f"it has more than {MOST_PRIMS} prims", Origin(source.name))

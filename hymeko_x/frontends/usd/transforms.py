@@ -17,7 +17,7 @@ from hymeko_x.ir.written import clean_pose
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin, Report
     from hymeko_x.frontends.usd.prims import Prim
-    from hymeko_x.frontends.usd.stage import Scene
+    from hymeko_x.frontends.usd.stage import OpenStage
 
 _ORDER = "xformOpOrder"
 _RESET = "!resetXformStack!"
@@ -36,7 +36,7 @@ class Transform(Struct, frozen=True):
 class Transforms:
     """World matrices in metres with z up, each computed once."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: OpenStage) -> None:
         self._cache = UsdGeom.XformCache()
         self._world = scene.world
         self._bodies: dict[str, Transform] = {}

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from hymeko_x.frontends.usd.builder import UsdBuilder
-    from hymeko_x.frontends.usd.joints import End, ReadJoint
+    from hymeko_x.frontends.usd.joints import JointEnd, ReadJoint
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.parts import Parameters
 
@@ -107,7 +107,7 @@ def _directed(tree: list[ReadJoint], roots: list[Id], builder: UsdBuilder) -> se
     return turned
 
 
-def _child(joint: ReadJoint, turned: set[Id]) -> End:
+def _child(joint: ReadJoint, turned: set[Id]) -> JointEnd:
     return joint.ends[0] if joint.id in turned else joint.ends[1]
 
 

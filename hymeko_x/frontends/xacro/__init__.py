@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def read(source: Source, report: Report) -> Reading:
-    """The mechanism that a xacro file describes, and the residue that it carries.
+    """The mechanism that a xacro file describes, and the residue that it contains.
 
     Raises: Refusal HX050 to HX058 when it cannot be expanded or is no URDF, and those of URDF.
     """

@@ -47,12 +47,12 @@ def read(source: Source, report: Report) -> Reading:
     if "link" not in expansion.children:
         hint = "a file that only defines macros is meant to be included by a robot that calls them"
         report.warn(codes.NOT_URDF, "the expansion has no links", Origin(source.name), hint=hint)
-    mechanism, carried = _read_text(expansion, source, report)
+    mechanism, residue = _read_text(expansion, source, report)
     lines = {key: origin.line for key, origin in mechanism.origins.items()}
     origins = {key: expansion.origin(line) for key, line in lines.items()}
     macros = {key: (macro,) for key, line in lines.items() if (macro := expansion.macro(line))}
     provenance = Provenance("xacro", file=source.name)
-    return Reading(replace(mechanism, origins={ROOT: expansion.root_origin, **origins}, stereotypes=macros, source=provenance), carried)
+    return Reading(replace(mechanism, origins={ROOT: expansion.root_origin, **origins}, stereotypes=macros, source=provenance), residue)
 
 
 def _check_is_urdf(expansion: Expansion) -> None:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.values import add, cross, scaled
 from hymeko_x.verify.checks.pair import Differences, Pair
 from hymeko_x.verify.dh import chain, chains, lines_of
-from hymeko_x.verify.dh.lines import NEARLY_PARALLEL, Frame, Line, Link, dot, feet, length, link_between, minus
+from hymeko_x.verify.dh.lines import NEARLY_PARALLEL, AxisLine, DhFrame, DhLink, dot, feet, length, link_between, minus
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -67,7 +67,7 @@ def _chains(pair: Pair) -> Iterator[tuple[int, int, list[int], list[int]]]:
         yield i, bodies[i], dofs, theirs
 
 
-def _signature(pair: Pair, body: int, dofs: list[int], *, first: bool) -> tuple[Link, ...]:
+def _signature(pair: Pair, body: int, dofs: list[int], *, first: bool) -> tuple[DhLink, ...]:
     model, poses, rest = (pair.a, pair.zero_a, None) if first else (pair.b, pair.zero_b, pair.rest_b)
     lines, frames = lines_of(model, chain(model, body)[0], body, dofs, poses, rest)
     return signature(lines, frames[1])
@@ -76,18 +76,18 @@ def _signature(pair: Pair, body: int, dofs: list[int], *, first: bool) -> tuple[
 # ---- the canonical numbers of a chain --------------------------------------------------------------------------------
 
 
-def signature(lines: Sequence[Line], tip: Frame) -> tuple[Link, ...]:
+def signature(lines: Sequence[AxisLine], tip: DhFrame) -> tuple[DhLink, ...]:
     """One link per joint: theta and d of the joint (0 of the first one), and the link to the next joint (0 of the last one)."""
     placed = [_placed(lines, i, tip.o) for i in range(len(lines))]
     frame = _first_frame(placed, tip)
-    found: list[Link] = []
+    found: list[DhLink] = []
     for line, following in itertools.pairwise(placed):
         link, frame = link_between(frame, line, following, signed=True, touching=_TOUCHING, keep=True)
         found.append(link)
-    return (*found, Link(0.0, 0.0, 0.0, 0.0))
+    return (*found, DhLink(0.0, 0.0, 0.0, 0.0))
 
 
-def _placed(lines: Sequence[Line], i: int, tip: Vec3) -> Line:
+def _placed(lines: Sequence[AxisLine], i: int, tip: Vec3) -> AxisLine:
     """A slide's line, which may be anywhere, through a point that only the hinges around it and the tip determine."""
     line = lines[i]
     if not line.sliding:
@@ -95,25 +95,25 @@ def _placed(lines: Sequence[Line], i: int, tip: Vec3) -> Line:
     before = [k for k in range(i - 1, -1, -1) if not lines[k].sliding]
     after = [k for k in range(i + 1, len(lines)) if not lines[k].sliding]
     if not after and not before:
-        return Line(tip, line.axis, sliding=True)
+        return AxisLine(tip, line.axis, sliding=True)
     own, others = (after[0], [*before[:1], *after[1:]]) if after else (before[0], before[1:])
     hinge = lines[own]
     skew = next((lines[k] for k in others if _sine(hinge, lines[k]) >= NEARLY_PARALLEL), None)
     point = _projected(tip, hinge) if skew is None else feet(hinge, skew)[0]
-    return Line(point, line.axis, sliding=True)
+    return AxisLine(point, line.axis, sliding=True)
 
 
-def _first_frame(lines: Sequence[Line], tip: Frame) -> Frame:
+def _first_frame(lines: Sequence[AxisLine], tip: DhFrame) -> DhFrame:
     """On the first axis, at the height and in the direction of the first common normal that is determined."""
     first = lines[0]
     decisive = next(((a, b) for a, b in itertools.pairwise(lines) if _sine(a, b) >= NEARLY_PARALLEL), None)
     origin = _projected(tip.o if decisive is None else feet(*decisive)[0], first)
     x = _across(_direction(lines, origin, tip), first.axis)
     x = scaled(x, 1.0 / length(x))
-    return Frame(origin, x, cross(first.axis, x), first.axis)
+    return DhFrame(origin, x, cross(first.axis, x), first.axis)
 
 
-def _direction(lines: Sequence[Line], origin: Vec3, tip: Frame) -> Vec3:
+def _direction(lines: Sequence[AxisLine], origin: Vec3, tip: DhFrame) -> Vec3:
     """Where x points: along the first link whose direction is determined, else to the tip, else along the tip's own axes."""
     axis = lines[0].axis
     for a, b in itertools.pairwise(lines):
@@ -133,10 +133,10 @@ def _across(vector: Vec3, axis: Vec3) -> Vec3:
     return minus(vector, scaled(axis, dot(vector, axis)))
 
 
-def _projected(point: Vec3, line: Line) -> Vec3:
+def _projected(point: Vec3, line: AxisLine) -> Vec3:
     """The foot of a point on a line."""
     return add(line.point, scaled(line.axis, dot(minus(point, line.point), line.axis)))
 
 
-def _sine(a: Line, b: Line) -> float:
+def _sine(a: AxisLine, b: AxisLine) -> float:
     return length(cross(a.axis, b.axis))

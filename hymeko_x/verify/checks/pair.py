@@ -174,7 +174,7 @@ def _shown(numbers: Array) -> str:
 
 
 def counted(quantity: str, findings: Sequence[str]) -> Check:
-    """The check of things that must have a counterpart: how many have none, and which."""
+    """The check of elements that must have a counterpart: how many have none, and which."""
     rest = f"; and {len(findings) - MOST_NAMED} more" if len(findings) > MOST_NAMED else ""
     each = tuple(Finding(words, 1.0) for words in findings)
     return Check(quantity, "", float(len(findings)), "; ".join(findings[:MOST_NAMED]) + rest, 0.0, findings=each)

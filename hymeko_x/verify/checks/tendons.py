@@ -14,7 +14,7 @@ import numpy as np
 from hymeko_x.verify.checks.pair import Differences, Pair, counted, same_numbers
 from hymeko_x.verify.features import Feature
 from hymeko_x.verify.matching.bodies import speller
-from hymeko_x.verify.model import JOINT, PULLEY, SIDE, KinematicModel, Spring, Step, Tendon
+from hymeko_x.verify.model import JOINT, PULLEY, SIDE, KinematicModel, SpringRange, Step, Tendon
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -141,7 +141,7 @@ def _interval_distance(bounds: tuple[float, float] | None, others: tuple[float, 
     return max(0.0 if a == b else abs(a - b) for a, b in zip(bounds, others, strict=True))
 
 
-def _spring_distance(ours: Spring, theirs: Spring) -> float:
+def _spring_distance(ours: SpringRange, theirs: SpringRange) -> float:
     return 0.0 if ours.at_rest and theirs.at_rest else _interval_distance(ours.between, theirs.between)
 
 

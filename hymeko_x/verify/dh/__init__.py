@@ -25,7 +25,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.verify.dh.lines import Frame, Line, Link, link_between, motion
+from hymeko_x.verify.dh.lines import AxisLine, DhFrame, DhLink, link_between, motion
 from hymeko_x.verify.dh.sheet import settled, turn_of_base
 from hymeko_x.verify.kinematics import draw, prepare
 from hymeko_x.verify.model import WORLD, Array, Kind, KinematicModel
@@ -43,7 +43,7 @@ class Convention(Enum):
     HAYATI = "hayati"
 
 
-class Row(Struct, frozen=True):
+class DhRow(Struct, frozen=True):
     """One joint: theta in rad and d in m, to which its coordinate adds (theta of a hinge, d of a slide), and its link.
 
     The link is that behind the joint in the standard convention and before it in the modified one; ``beta`` in rad is not
@@ -69,13 +69,13 @@ class Table(Struct, frozen=True, eq=False):
     convention: Convention
     start: str
     tip: str
-    rows: tuple[Row, ...]
+    rows: tuple[DhRow, ...]
     base: Array
     tool: Array
     dofs: tuple[int, ...]
     ends: tuple[int, int]
-    base_rows: tuple[Link, ...] = ()
-    tool_rows: tuple[Link, ...] = ()
+    base_rows: tuple[DhLink, ...] = ()
+    tool_rows: tuple[DhLink, ...] = ()
 
     def poses(self, q: Array) -> Array:
         """Poses (n, 4, 4) of the tip at coordinates (n, rows)."""
@@ -148,15 +148,15 @@ def zero_poses(model: KinematicModel, coordinates: Array | None = None) -> Array
 
 def lines_of(
     model: KinematicModel, start: int, body: int, dofs: Sequence[int], poses: Array, coordinates: Array | None = None
-) -> tuple[list[Line], tuple[Frame, Frame]]:
+) -> tuple[list[AxisLine], tuple[DhFrame, DhFrame]]:
     """The dofs' axes and the frames of the chain's two ends, in the frame of ``start``, in these world poses (of :func:`zero_poses`)."""
     back = np.linalg.inv(poses[start])
     rest = np.zeros(model.width) if coordinates is None else coordinates
     lines = [_line(model, dof, back @ poses[model.bodies[model.body_of_dof[dof]].parent], rest) for dof in dofs]
-    return lines, (Frame.of(np.eye(4)), Frame.of(back @ poses[body]))
+    return lines, (DhFrame.of(np.eye(4)), DhFrame.of(back @ poses[body]))
 
 
-def _line(model: KinematicModel, index: int, parent: Array, rest: Array) -> Line:
+def _line(model: KinematicModel, index: int, parent: Array, rest: Array) -> AxisLine:
     """The axis of one dof: through its anchor, behind the dofs of the same joint that come before it, at these coordinates."""
     body = model.body_of_dof[index]
     joint = model.bodies[body].joint
@@ -167,7 +167,7 @@ def _line(model: KinematicModel, index: int, parent: Array, rest: Array) -> Line
     dof = model.dofs[index]
     point, axis = place[:3, :3] @ dof.anchor + place[:3, 3], place[:3, :3] @ dof.axis
     (px, py, pz), (x, y, z) = point.tolist(), axis.tolist()
-    return Line((px, py, pz), (x, y, z), sliding=dof.kind is Kind.SLIDE)
+    return AxisLine((px, py, pz), (x, y, z), sliding=dof.kind is Kind.SLIDE)
 
 
 def _displaced(kind: Kind, axis: Array, anchor: Array, by: float, pitch: float) -> Array:
@@ -194,11 +194,11 @@ def _tip(model: KinematicModel, tip: str | int | None) -> int:
 # ---- from lines to rows ----------------------------------------------------------------------------------------------
 
 
-def _through(lines: Sequence[Line], base: Frame, tip: Frame, *, keep: bool) -> tuple[list[Link], tuple[float, float]]:
+def _through(lines: Sequence[AxisLine], base: DhFrame, tip: DhFrame, *, keep: bool) -> tuple[list[DhLink], tuple[float, float]]:
     """The links L_0 ... L_n with the J_i in front of them, and the last J (theta, d)."""
     frame = base
-    links: list[Link] = []
-    ends = [Line(base.o, base.z), *lines, Line(tip.o, tip.z)]
+    links: list[DhLink] = []
+    ends = [AxisLine(base.o, base.z), *lines, AxisLine(tip.o, tip.z)]
     for line, following in itertools.pairwise(ends):
         link, frame = link_between(frame, line, following, keep=keep)
         links.append(link)
@@ -210,33 +210,33 @@ def _grouped(
     convention: Convention,
     ends: tuple[int, int],
     dofs: Sequence[int],
-    links: Sequence[Link],
+    links: Sequence[DhLink],
     last: tuple[float, float],
     turn: float = 0.0,
 ) -> Table:
     """The same numbers grouped by the convention; the base takes this turn from the first theta, and then all of the first link."""
     first, end = links[0], links[-1]
-    turned = Link(turn, 0.0, 0.0, 0.0)
+    turned = DhLink(turn, 0.0, 0.0, 0.0)
     if turn:
-        links = [Link(0.0, 0.0, 0.0, 0.0), replace(links[1], theta=0.0), *links[2:]]
+        links = [DhLink(0.0, 0.0, 0.0, 0.0), replace(links[1], theta=0.0), *links[2:]]
     if convention is Convention.MODIFIED:
         shapes = links[:-1]
         before = [replace(first, a=0.0, alpha=0.0, beta=0.0), *([replace(first, theta=turn, d=0.0)] if turn else ())]
         behind = [replace(end, theta=last[0], d=last[1])]
     else:
         shapes = links[1:]
-        before, behind = [first, turned], [Link(*last, 0.0, 0.0)]
+        before, behind = [first, turned], [DhLink(*last, 0.0, 0.0)]
     base, tool = (_product(rows, convention) for rows in (before, behind))
     rows = tuple(
-        Row(_name(model, dof), model.dofs[dof].kind, joint.theta, joint.d, shape.a, shape.alpha, shape.beta)
+        DhRow(_name(model, dof), model.dofs[dof].kind, joint.theta, joint.d, shape.a, shape.alpha, shape.beta)
         for dof, joint, shape in zip(dofs, links[1:], shapes, strict=True)
     )
     names = [model.bodies[end].name or f"body {end}" for end in ends]
-    base_rows, tool_rows = (tuple(row for row in constant if row != Link(0.0, 0.0, 0.0, 0.0)) for constant in (before, behind))
+    base_rows, tool_rows = (tuple(row for row in constant if row != DhLink(0.0, 0.0, 0.0, 0.0)) for constant in (before, behind))
     return Table(convention, names[0], names[1], rows, base, tool, tuple(dofs), ends, base_rows, tool_rows)
 
 
-def _product(rows: Sequence[Link], convention: Convention) -> Array:
+def _product(rows: Sequence[DhLink], convention: Convention) -> Array:
     """The transformation of rows without a coordinate."""
     out = np.eye(4)
     for row in rows:
@@ -255,7 +255,7 @@ def _joint_matrix(theta: float, d: float) -> Array:
     return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, d], [0, 0, 0, 1]])
 
 
-def _joint_motions(row: Row, values: Array) -> Array:
+def _joint_motions(row: DhRow, values: Array) -> Array:
     """J of one row at coordinates (n,), as (n, 4, 4)."""
     sliding = row.kind is Kind.SLIDE
     theta = np.full(len(values), row.theta) if sliding else row.theta + values

@@ -27,7 +27,7 @@ TOUCHING = 1e-10
 """The distance in m below which two lines meet, or coincide when they are parallel."""
 
 
-class Line(Struct, frozen=True):
+class AxisLine(Struct, frozen=True):
     """A joint's axis in its positive sense: through ``point``, along unit ``axis``. Of a slide only the direction is physical."""
 
     point: Vec3
@@ -35,7 +35,7 @@ class Line(Struct, frozen=True):
     sliding: bool = False
 
 
-class Frame(Struct, frozen=True):
+class DhFrame(Struct, frozen=True):
     """A right-handed frame: origin and axes."""
 
     o: Vec3
@@ -44,7 +44,7 @@ class Frame(Struct, frozen=True):
     z: Vec3
 
     @classmethod
-    def of(cls, matrix: Array) -> Frame:
+    def of(cls, matrix: Array) -> DhFrame:
         """From a homogeneous matrix."""
         columns = [(float(c[0]), float(c[1]), float(c[2])) for c in matrix[:3].T]
         return cls(columns[3], columns[0], columns[1], columns[2])
@@ -58,7 +58,7 @@ class Frame(Struct, frozen=True):
         return dot(minus(point, self.o), self.z)
 
 
-class Link(Struct, frozen=True):
+class DhLink(Struct, frozen=True):
     """J = Rz(theta) Tz(d) along one line, then L = Tx(a) Rx(alpha) Ry(beta) to the next."""
 
     theta: float
@@ -79,8 +79,8 @@ def motion(a: float, alpha: float, beta: float = 0.0) -> Array:
 
 
 def link_between(
-    frame: Frame, line: Line, following: Line, *, signed: bool = False, touching: float = TOUCHING, keep: bool = False
-) -> tuple[Link, Frame]:
+    frame: DhFrame, line: AxisLine, following: AxisLine, *, signed: bool = False, touching: float = TOUCHING, keep: bool = False
+) -> tuple[DhLink, DhFrame]:
     """The link from a frame on ``line`` to a frame on the line that follows it, and that frame.
 
     A parallel link may leave the line anywhere: it does so at the height of the line's own point (or of the frame, with ``keep``).
@@ -105,7 +105,7 @@ def link_between(
     return _finished(frame, foot, scaled(gap, 1.0 / distance), distance, following.axis, tilted=sine >= PARALLEL)
 
 
-def _finished(frame: Frame, foot: Vec3, x: Vec3, a: float, axis: Vec3, *, tilted: bool = False) -> tuple[Link, Frame]:
+def _finished(frame: DhFrame, foot: Vec3, x: Vec3, a: float, axis: Vec3, *, tilted: bool = False) -> tuple[DhLink, DhFrame]:
     """The numbers of a link that leaves the line at ``foot`` in direction ``x``, and the frame that they lead to.
 
     ``tilted`` allows an angle beta, for axes that are nearly parallel.
@@ -117,14 +117,14 @@ def _finished(frame: Frame, foot: Vec3, x: Vec3, a: float, axis: Vec3, *, tilted
     across, up, along = dot(axis, out_x), dot(axis, out_y), dot(axis, frame.z)
     alpha = math.atan2(-up, along)
     beta = math.atan2(across, math.hypot(up, along)) if tilted else 0.0
-    link = Link(theta + 0.0, d + 0.0, a + 0.0, alpha + 0.0, beta + 0.0)  # no negative zeros
+    link = DhLink(theta + 0.0, d + 0.0, a + 0.0, alpha + 0.0, beta + 0.0)  # no negative zeros
     rotation = np.array([out_x, out_y, frame.z]).T @ link.matrix()[:3, :3]
     origin = add(add(frame.o, scaled(frame.z, d)), scaled(out_x, a))
     (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = rotation.tolist()
-    return link, Frame(origin, (x0, x1, x2), (y0, y1, y2), (z0, z1, z2))
+    return link, DhFrame(origin, (x0, x1, x2), (y0, y1, y2), (z0, z1, z2))
 
 
-def feet(line: Line, other: Line) -> tuple[Vec3, Vec3]:
+def feet(line: AxisLine, other: AxisLine) -> tuple[Vec3, Vec3]:
     """The ends of the common normal of two lines that are not parallel, one on each."""
     normal = cross(line.axis, other.axis)
     gap = minus(other.point, line.point)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.verify.dh.lines import Link
+from hymeko_x.verify.dh.lines import DhLink
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,11 +23,11 @@ _ZERO = 1e-9
 _SAME = 1e-11
 """Below this two axes are one, and what is moved along it makes no difference."""
 
-Chain = tuple[list[Link], tuple[float, float]]
+Chain = tuple[list[DhLink], tuple[float, float]]
 """J_0 L_0 ... J_n L_n as links, and theta and d of J_n+1."""
 
 
-def settled(links: Sequence[Link], last: tuple[float, float], *, sliding_end: bool = False) -> Chain:
+def settled(links: Sequence[DhLink], last: tuple[float, float], *, sliding_end: bool = False) -> Chain:
     """The same chain with the fewest offsets of theta, then the plainest base and tip, then the first alpha that is not zero positive.
 
     J_1 has no theta: it is in ``theta`` of L_0 where axis 1 is the base's z axis, and otherwise the base has it, see :func:`turn_of_base`.
@@ -47,7 +47,7 @@ def turn_of_base(chain: Chain) -> float:
     return chain[0][1].theta
 
 
-def _with_first_normal(links: Sequence[Link], last: tuple[float, float], *, is_turned: bool) -> Chain:
+def _with_first_normal(links: Sequence[DhLink], last: tuple[float, float], *, is_turned: bool) -> Chain:
     """The chain whose first normal points as found or the other way, and each later one so that its theta is at most a right angle."""
     found = list(links)
     thetas = [*(link.theta for link in links), last[0]]
@@ -66,12 +66,12 @@ def _with_first_normal(links: Sequence[Link], last: tuple[float, float], *, is_t
     return settled, (_wrapped(thetas[-1]), last[1])
 
 
-def _summed(theta: float, other: float, link: Link) -> float:
+def _summed(theta: float, other: float, link: DhLink) -> float:
     """Two offsets with a link along one axis between them as one; the axis may turn round there."""
     return theta + (other if abs(link.alpha) < 1 else -other)
 
 
-def _is_better_turned(theta: float, link: Link) -> bool:
+def _is_better_turned(theta: float, link: DhLink) -> bool:
     """Whether theta would be nearer to zero; at a right angle, whether a (or else alpha) would be positive."""
     away = abs(_wrapped(theta)) - math.pi / 2
     if abs(away) > _ZERO:
@@ -79,7 +79,7 @@ def _is_better_turned(theta: float, link: Link) -> bool:
     return link.a < -_ZERO or (abs(link.a) <= _ZERO and link.alpha < 0)
 
 
-def _is_straight(link: Link) -> bool:
+def _is_straight(link: DhLink) -> bool:
     """Whether the next axis lies in the same line."""
     return abs(link.a) < _SAME and abs(math.sin(link.alpha)) < _SAME and abs(link.beta) < _SAME
 

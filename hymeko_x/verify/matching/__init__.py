@@ -24,7 +24,7 @@ _SAME_MOTION = {Kind.SCREW: Kind.HINGE}  # a screw's angle is the coordinate of 
 _MOST_LISTED = 3  # bodies named in a note
 
 
-class Finding(Struct, frozen=True):
+class Unmatched(Struct, frozen=True):
     """Something that has no counterpart: the quantity that it belongs to, and words that name it."""
 
     quantity: str
@@ -54,7 +54,7 @@ class Match(Struct):
     bodies: list[tuple[int, int]] = field(default_factory=lambda: [(WORLD, WORLD)])
     dofs: list[tuple[int, int]] = field(default_factory=list)
     balls: list[BallMatch] = field(default_factory=list)
-    findings: list[Finding] = field(default_factory=list)
+    findings: list[Unmatched] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     pinned_a: set[int] = field(default_factory=set)
     pinned_b: set[int] = field(default_factory=set)
@@ -63,7 +63,7 @@ class Match(Struct):
 
     def find(self, quantity: str, words: str) -> None:
         """Record something without a counterpart."""
-        self.findings.append(Finding(quantity, words))
+        self.findings.append(Unmatched(quantity, words))
 
 
 class JointPath(Struct, frozen=True):

@@ -252,7 +252,7 @@ def _end(arc: RobotArc, numbers: Mapping[Id, int], frames: Placed) -> tuple[int,
 def _frames(mechanism: Mechanism, numbers: Mapping[Id, int]) -> Placed:
     """The body of each mounted element, and its pose there."""
     views = chain.from_iterable(mechanism.mounts.values())
-    return {view.thing: (numbers[view.body], _matrix(view.pose)) for view in views if view.body in numbers}
+    return {view.mounted: (numbers[view.body], _matrix(view.pose)) for view in views if view.body in numbers}
 
 
 def _closure(loop: parts.Loop) -> tuple[str, str, Array]:
@@ -341,12 +341,12 @@ def _tendon(name: str, tendon: parts.Tendon, path: tuple[Step, ...]) -> Tendon:
     )
 
 
-def _spring(value: Parameter) -> m.Spring:
+def _spring(value: Parameter) -> m.SpringRange:
     """One length, or two; -1 and nothing are the length at rest."""
     lengths = value if isinstance(value, tuple) else (value,) if isinstance(value, float) else ()
     if not lengths or lengths[0] == -1.0:
         return m.RELAXED
-    return m.Spring((lengths[0], lengths[-1]), at_rest=False)
+    return m.SpringRange((lengths[0], lengths[-1]), at_rest=False)
 
 
 def _step(mechanism: Mechanism, arc: RobotArc, dofs: Mapping[tuple[Id, str], int], sites: Placed, shapes: Placed) -> Step | None:

@@ -8,7 +8,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from hymeko_x.frontends.xacro.child.channel import Parent
-from hymeko_x.frontends.xacro.child.desk import Arguments, Desk, Output
+from hymeko_x.frontends.xacro.child.desk import Arguments, Desk, NoticeStream
 from hymeko_x.frontends.xacro.child.expander import Expander
 from hymeko_x.frontends.xacro.child.failing import failure
 from hymeko_x.frontends.xacro.child.limits import lift_memory_limit, set_limits
@@ -33,7 +33,7 @@ def main() -> None:
     gc.disable()  # everything lives until the end
     arguments = Arguments(job["arguments"])
     expander = Expander(desk, arguments)
-    sys.stdout = sys.stderr = Output(desk)
+    sys.stdout = sys.stderr = NoticeStream(desk)
     set_limits(job["cpu_seconds"], job["memory_bytes"])
     lines = expander.expand(job["name"], job["shown"], data)
     for name in sorted(job["arguments"].keys() - arguments.mentioned):

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.frontends.xacro.child.channel import Parent
-    from hymeko_x.frontends.xacro.child.dom import Place
+    from hymeko_x.frontends.xacro.child.dom import SourcePlace
 
 MOST_NOTICES = 200
 
@@ -47,7 +47,7 @@ class Desk:
         self.notices: list[dict[str, object]] = []
         self.files: list[str] = []
 
-    def notice(self, kind: str, place: Place | None, **more: object) -> None:
+    def notice(self, kind: str, place: SourcePlace | None, **more: object) -> None:
         """Something to report when the expansion is done, once for each place."""
         facts = {"kind": kind, "file": place and place.file, "line": place and place.line, **more}
         if facts not in self.notices and len(self.notices) < MOST_NOTICES:
@@ -100,7 +100,7 @@ class Desk:
         return self._environment.get(name, default)
 
 
-class Output(io.TextIOBase):
+class NoticeStream(io.TextIOBase):
     """Standard error and output while xacro works: its messages become notices."""
 
     _PLACES = ("when instantiating macro:", "instantiated from:", "in file:", "when processing file:", "included from:")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from types import FrameType
 
 
-class Place(NamedTuple):
+class SourcePlace(NamedTuple):
     """Where an element was written: file, line, and the macro around it (None at top level)."""
 
     file: str
@@ -54,7 +54,7 @@ class PlacingBuilder(expatbuilder.ExpatBuilderNS):
         """Begin an element, and note its file and line."""
         around = self.curNode
         super().start_element_handler(name, attributes)
-        self.curNode.setUserData(PLACE, Place(self._file, self.getParser().CurrentLineNumber, _macro_around(around)), KEEP_PLACE)
+        self.curNode.setUserData(PLACE, SourcePlace(self._file, self.getParser().CurrentLineNumber, _macro_around(around)), KEEP_PLACE)
 
     def _refuse_entity(self, *declaration: object) -> NoReturn:
         raise Trouble("entities", file=self._file, line=self.getParser().CurrentLineNumber)
@@ -67,17 +67,17 @@ def _macro_around(node: Any) -> str | None:
     return str(node.getAttribute("name")).removeprefix("xacro:")
 
 
-def place_of(node: Any) -> Place | None:
+def place_of(node: Any) -> SourcePlace | None:
     """Where a node was written; for text and comments, where the element around it was."""
     while node is not None:
-        found: Place | None = node.getUserData(PLACE)
+        found: SourcePlace | None = node.getUserData(PLACE)
         if found is not None:
             return found
         node = node.parentNode
     return None
 
 
-def place_in(frame: FrameType) -> Place | None:
+def place_in(frame: FrameType) -> SourcePlace | None:
     """The place of the element that a function of xacro is working on; None for the frames of expressions."""
     if frame.f_code.co_filename == EXPRESSION:
         return None
@@ -85,7 +85,7 @@ def place_in(frame: FrameType) -> Place | None:
     return next((place for value in values if isinstance(value, xml.dom.minidom.Node) and (place := place_of(value))), None)
 
 
-def current_place() -> Place | None:
+def current_place() -> SourcePlace | None:
     """The element that xacro is working on now."""
     return next((place for frame in _frames(sys._getframe(1)) if (place := place_in(frame))), None)
 
@@ -96,13 +96,13 @@ def _frames(frame: FrameType | None) -> Iterator[FrameType]:
         frame = frame.f_back
 
 
-class Lines:
+class LineNotes:
     """Collects text that minidom writes and notes on which line each element starts."""
 
     def __init__(self) -> None:
         self.pieces: list[str] = []
         self.line = 1
-        self.starts: list[tuple[int, Place]] = []
+        self.starts: list[tuple[int, SourcePlace]] = []
 
     def write(self, text: str) -> None:
         """Append a piece of text."""
@@ -116,9 +116,9 @@ class Lines:
             self.starts.append((self.line, place))
 
 
-def written(document: Any) -> Lines:
+def written(document: Any) -> LineNotes:
     """The text of a document as minidom prints it, two blanks per level."""
-    lines = Lines()
+    lines = LineNotes()
     write_element = xml.dom.minidom.Element.writexml
 
     def write_marked(element: Any, *how: Any) -> None:

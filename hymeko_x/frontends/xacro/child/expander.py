@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from hymeko_x.frontends.xacro.child.desk import Arguments, Desk
-    from hymeko_x.frontends.xacro.child.dom import Lines
+    from hymeko_x.frontends.xacro.child.dom import LineNotes
 
 
 class Expander:
@@ -42,7 +42,7 @@ class Expander:
         substitution_args._eval_find = self._find
         substitution_args._eval = self._evaluator(substitution_args, functions)
 
-    def expand(self, name: str, shown: str, data: bytes) -> Lines:
+    def expand(self, name: str, shown: str, data: bytes) -> LineNotes:
         """The text of the expanded file, written as xacro writes it."""
         self._xacro.init_stacks(name)
         self.document = self._build(shown, data)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from types import FrameType, TracebackType
 
-    from hymeko_x.frontends.xacro.child.dom import Place
+    from hymeko_x.frontends.xacro.child.dom import SourcePlace
 
 MOST_CALLS = 5
 """How many macro calls and includes a failure shows, from the inside."""
@@ -67,7 +67,7 @@ def _traced(trace: TracebackType | None) -> Iterator[FrameType]:
         trace = trace.tb_next
 
 
-def _calls(steps: Iterable[tuple[FrameType, Place]]) -> Iterator[dict[str, object]]:
+def _calls(steps: Iterable[tuple[FrameType, SourcePlace]]) -> Iterator[dict[str, object]]:
     """The macro calls and includes on the way to the failure, from the outside."""
     for frame, place in steps:
         if frame.f_code.co_name == "handle_macro_call":

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 import numpy as np
 
-from hymeko_x.verify.model import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Spring, Step, Tendon, point_of
+from hymeko_x.verify.model import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, SpringRange, Step, Tendon, point_of
 from hymeko_x.verify.spatial import rotation_from_quat
 
 if TYPE_CHECKING:
@@ -53,9 +53,9 @@ def _lengths_at_rest(compiled: Any) -> Array:
     return np.array(data.ten_length)
 
 
-def _spring(compiled: Any, tendon: int, rest: float) -> Spring:
+def _spring(compiled: Any, tendon: int, rest: float) -> SpringRange:
     low, high = _range(compiled.tendon_lengthspring[tendon])
-    return Spring((low, high), at_rest=bool(max(abs(low - rest), abs(high - rest)) <= _SAME_LENGTH * max(1.0, abs(rest))))
+    return SpringRange((low, high), at_rest=bool(max(abs(low - rest), abs(high - rest)) <= _SAME_LENGTH * max(1.0, abs(rest))))
 
 
 def _steps(compiled: Any, wrap: int, dofs: Mapping[int, int]) -> Iterator[Step]:

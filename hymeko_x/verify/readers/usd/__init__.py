@@ -20,7 +20,7 @@ from hymeko_x.verify.features import Feature
 from hymeko_x.verify.model import WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, world_body
 from hymeko_x.verify.readers import native_output
 from hymeko_x.verify.readers.usd.joints import JointEdge, read_couplings, read_joint, read_loop
-from hymeko_x.verify.readers.usd.scene import Scene, value_of
+from hymeko_x.verify.readers.usd.scene import MeasuredStage, value_of
 from hymeko_x.verify.readers.usd.shapes import read_shapes
 from hymeko_x.verify.readers.usd.tendons import limits_are_automatic, read_tendons, tendon_paths
 from hymeko_x.verify.spatial import rotation_from_quat
@@ -61,7 +61,7 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
             if not _choose(stage, lookup.variants, path):
                 break
         found = UsdPhysics.UsdPhysicsLoadStageFromPrimRange(stage, [Sdf.Path.absoluteRootPath])
-    return _model(Scene.of(stage), path.stem, found)
+    return _model(MeasuredStage.of(stage), path.stem, found)
 
 
 def _choose(stage: Any, variants: Mapping[str, str], path: Path) -> bool:
@@ -78,7 +78,7 @@ def _choose(stage: Any, variants: Mapping[str, str], path: Path) -> bool:
     return bool(changed)
 
 
-def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
+def _model(scene: MeasuredStage, name: str, found: Mapping[Any, Any]) -> KinematicModel:
     kinds = UsdPhysics.ObjectType
     rigid_bodies = {str(desc.primPath): desc for desc in found.get(kinds.RigidBody, ((), ()))[1] if desc.rigidBodyEnabled}
     joints = [desc for word in _JOINTS for desc in found.get(getattr(kinds, word), ((), ()))[1] if desc.jointEnabled and desc.isValid]
@@ -118,7 +118,7 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
     return read_couplings(scene, model, tree)
 
 
-def _is_ground(scene: Scene, path: str, edge: JointEdge | None) -> bool:
+def _is_ground(scene: MeasuredStage, path: str, edge: JointEdge | None) -> bool:
     """Whether a body called ``world`` is the world itself, as in a URDF: it has no mass and is fixed to it at its origin."""
     if edge is None or edge.parent or edge.dofs or edge.more or scene.stage.GetPrimAtPath(path).GetAttribute("physics:mass").Get():
         return False
@@ -202,7 +202,7 @@ def _acyclic(edges: Sequence[JointEdge]) -> list[JointEdge]:
     return found
 
 
-def _root_joint(scene: Scene, prim: Any, kinematic: bool) -> Joint:
+def _root_joint(scene: MeasuredStage, prim: Any, kinematic: bool) -> Joint:
     """A body without a joint to a parent falls freely, unless it is kinematic."""
     return Joint(None, scene.pose(prim), () if kinematic else (Dof(Kind.FREE, np.array([0.0, 0.0, 1.0])),))
 
@@ -210,7 +210,7 @@ def _root_joint(scene: Scene, prim: Any, kinematic: bool) -> Joint:
 # ---- inertia ---------------------------------------------------------------------------------------------------------
 
 
-def _inertia(scene: Scene, prim: Any, has_shapes: bool) -> tuple[bool, float, Array, Array]:
+def _inertia(scene: MeasuredStage, prim: Any, has_shapes: bool) -> tuple[bool, float, Array, Array]:
     """Whether it is known, mass, centre and tensor by MassAPI. Zeros mean "not authored": engines then compute them from the shapes."""
     api = UsdPhysics.MassAPI(prim)
     mass = float(api.GetMassAttr().Get() or 0.0) * scene.kilograms

@@ -17,7 +17,7 @@ from hymeko_x.verify.spatial import frame_with_z, rigid, rotation_from_quat
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.verify.readers.usd.scene import Scene
+    from hymeko_x.verify.readers.usd.scene import MeasuredStage
 
 _AXES = {UsdPhysics.Axis.X: 0, UsdPhysics.Axis.Y: 1, UsdPhysics.Axis.Z: 2}
 _DOF = UsdPhysics.JointDOF
@@ -82,7 +82,7 @@ def _reversed(dof: Dof) -> Dof:
     return replace(dof, axis=-dof.axis)
 
 
-def read_joint(scene: Scene, desc: Any, name: str) -> JointEdge:
+def read_joint(scene: MeasuredStage, desc: Any, name: str) -> JointEdge:
     """A joint of the parser, in SI units."""
     parent, child = _path(desc.body0), _path(desc.body1)
     poses = (
@@ -97,13 +97,13 @@ def _path(path: Any) -> str:
     return "" if path.isEmpty else str(path)
 
 
-def _local(scene: Scene, position: Any, orientation: Any, in_world: bool) -> Array:
+def _local(scene: MeasuredStage, position: Any, orientation: Any, in_world: bool) -> Array:
     quat = np.array([orientation.GetReal(), *orientation.GetImaginary()], dtype=float)
     frame = rigid(rotation_from_quat(quat), np.array(position, dtype=float) * scene.metres)
     return rigid(scene.upright, np.zeros(3)) @ frame if in_world else frame
 
 
-def _dofs(scene: Scene, desc: Any, name: str) -> tuple[tuple[Dof, ...], str]:
+def _dofs(scene: MeasuredStage, desc: Any, name: str) -> tuple[tuple[Dof, ...], str]:
     """The dofs, and the kind of closure that the joint would be."""
     kinds = UsdPhysics.ObjectType
     match desc.type:
@@ -123,7 +123,7 @@ def _dofs(scene: Scene, desc: Any, name: str) -> tuple[tuple[Dof, ...], str]:
             return (), "other"
 
 
-def _counted(scene: Scene, desc: Any, dof: Dof, unit: float) -> Dof:
+def _counted(scene: MeasuredStage, desc: Any, dof: Dof, unit: float) -> Dof:
     """The dof with the coordinate that it has where both frames coincide, by MjcJointAPI; its limits are coordinates of that kind.
 
     Source: Newton's importer, which takes `mjc:ref` off the limits; mujoco-usd-converter, which writes them so.
@@ -139,7 +139,7 @@ def _scalar(kind: Kind, axis: int, limit: Any, unit: float, name: str | None) ->
     return Dof(kind, np.eye(3)[axis], name=name, lower=lower * unit, upper=upper * unit)
 
 
-def _d6(scene: Scene, desc: Any, name: str) -> tuple[tuple[Dof, ...], str]:
+def _d6(scene: MeasuredStage, desc: Any, name: str) -> tuple[tuple[Dof, ...], str]:
     """Free and limited axes as slides and hinges in the order x, y, z; three free turns are a ball."""
     limits = {pair.first: pair.second for pair in desc.jointLimits}
     free = [item for item in _D6 if not (item[0] in limits and limits[item[0]].lower > limits[item[0]].upper)]
@@ -155,7 +155,7 @@ def _d6(scene: Scene, desc: Any, name: str) -> tuple[tuple[Dof, ...], str]:
     return tuple(dofs), {0: "weld", 1: "hinge" if turns else "slide"}.get(len(free), "other")
 
 
-def _d6_dof(scene: Scene, item: tuple[Any, Kind, int], limit: Any, name: str | None) -> Dof:
+def _d6_dof(scene: MeasuredStage, item: tuple[Any, Kind, int], limit: Any, name: str | None) -> Dof:
     _, kind, axis = item
     if limit is None:
         return Dof(kind, np.eye(3)[axis], name=name)
@@ -176,7 +176,7 @@ def read_loop(edge: JointEdge, body_a: int, body_b: int) -> Loop:
 # ---- couplings -------------------------------------------------------------------------------------------------------
 
 
-def read_couplings(scene: Scene, model: KinematicModel, tree: Mapping[str, JointEdge]) -> KinematicModel:
+def read_couplings(scene: MeasuredStage, model: KinematicModel, tree: Mapping[str, JointEdge]) -> KinematicModel:
     """The model with the couplings by NewtonMimicAPI and MjcEqualityJointAPI.
 
     Source: Newton's importer, where MjcEqualityJointAPI adds the powers above the first; its names of leader and lower coefficients
@@ -193,7 +193,7 @@ def dof_names(model: KinematicModel) -> dict[str, int]:
     return {dof.name: index for index, dof in enumerate(model.dofs) if dof.name is not None}
 
 
-def _coupling(scene: Scene, path: str, paths: Mapping[str, JointEdge], dofs: Mapping[str, int]) -> Coupling | None:
+def _coupling(scene: MeasuredStage, path: str, paths: Mapping[str, JointEdge], dofs: Mapping[str, int]) -> Coupling | None:
     prim = scene.stage.GetPrimAtPath(path)
     follower = dofs.get(paths[path].name)
     if follower is None:
@@ -207,7 +207,7 @@ def _coupling(scene: Scene, path: str, paths: Mapping[str, JointEdge], dofs: Map
     return Coupling(follower, _constant(scene, prim, paths[path]), ((leader[1], tuple(others)),))
 
 
-def _constant(scene: Scene, prim: Any, edge: JointEdge) -> float:
+def _constant(scene: MeasuredStage, prim: Any, edge: JointEdge) -> float:
     """The constant of a coupling: Newton's is a coordinate of the follower in the file, MuJoCo's in rad or m."""
     if not prim.HasAttribute("newton:mimicCoef0"):
         return number_of(prim, "mjc:coef0", 0.0)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _Z_FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
-class Scene(Struct, frozen=True, eq=False):
+class MeasuredStage(Struct, frozen=True, eq=False):
     """A stage with its units: ``metres`` and ``kilograms`` per unit, ``upright`` the rotation that makes z point up."""
 
     stage: Any
@@ -27,7 +27,7 @@ class Scene(Struct, frozen=True, eq=False):
     upright: Array
 
     @classmethod
-    def of(cls, stage: Any) -> Scene:
+    def of(cls, stage: Any) -> MeasuredStage:
         """The stage with the units that it declares; y-up stages are turned about x, as every converter does."""
         upright = np.eye(3) if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z else _Z_FROM_Y_UP
         return cls(stage, UsdGeom.GetStageMetersPerUnit(stage), UsdPhysics.GetStageKilogramsPerUnit(stage), upright)

@@ -14,7 +14,7 @@ from hymeko_x.verify.spatial import rigid
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.verify.readers.usd.scene import Scene
+    from hymeko_x.verify.readers.usd.scene import MeasuredStage
 
 _ALONG = {
     "X": np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]),
@@ -29,7 +29,7 @@ _RINGS, _AROUND = 15, 32
 _EVEN = 1e-5  # scales this close are one: they are stored as floats
 
 
-def read_shapes(scene: Scene, found: Mapping[Any, Any], bodies: set[str]) -> dict[str, tuple[Shape, ...]]:
+def read_shapes(scene: MeasuredStage, found: Mapping[Any, Any], bodies: set[str]) -> dict[str, tuple[Shape, ...]]:
     """The shapes of each body by its path; those of the world under ""."""
     colliding = {str(path) for paths, descs in found.values() for path, desc in zip(paths, descs, strict=True) if _collides(desc)}
     shapes: dict[str, list[Shape]] = {}
@@ -57,7 +57,7 @@ def _role(prim: Any, collides: bool) -> Role | None:
     return Role.VISUAL if drawn else None
 
 
-def shape_of(scene: Scene, prim: Any, body: str, role: Role) -> Shape | None:
+def shape_of(scene: MeasuredStage, prim: Any, body: str, role: Role) -> Shape | None:
     """A primitive in the body's frame; a mesh as triangles in it."""
     pose, scale = scene.relative(body, prim)
     name = prim.GetDisplayName() or prim.GetName()

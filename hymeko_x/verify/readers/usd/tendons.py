@@ -11,7 +11,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 from pxr import Sdf
 
-from hymeko_x.verify.model import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Kind, Role, Spring, Step, Tendon, point_of
+from hymeko_x.verify.model import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Kind, Role, SpringRange, Step, Tendon, point_of
 from hymeko_x.verify.readers.usd.joints import dof_names
 from hymeko_x.verify.readers.usd.scene import number_of, owner, targets_of, value_of
 from hymeko_x.verify.readers.usd.shapes import shape_of
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.model import KinematicModel
     from hymeko_x.verify.readers.usd.joints import JointEdge
-    from hymeko_x.verify.readers.usd.scene import Scene
+    from hymeko_x.verify.readers.usd.scene import MeasuredStage
 
 _TYPE, _SITE_API = "MjcTendon", "MjcSiteAPI"
 _ROUND = {"sphere": SPHERE, "cylinder": CYLINDER}
@@ -34,7 +34,7 @@ class _BadPath(Exception):
 class _Targets(Struct, frozen=True, eq=False):
     """The targets of paths: each joint's dof by the joint's path, and the bodies by theirs; "" is the world."""
 
-    scene: Scene
+    scene: MeasuredStage
     dofs: Mapping[str, int]
     kinds: Mapping[str, Kind]
     bodies: Mapping[str, int]
@@ -46,7 +46,7 @@ def tendon_paths(prims: Sequence[Any]) -> list[str]:
 
 
 def read_tendons(
-    scene: Scene,
+    scene: MeasuredStage,
     model: KinematicModel,
     names: Mapping[str, str],
     tree: Mapping[str, JointEdge],
@@ -105,12 +105,12 @@ def _bounds(prim: Any, name: str, limited: str, unit: float, *, automatic: bool)
     return (low * unit, high * unit) if holds else None
 
 
-def _spring(prim: Any, metres: float) -> Spring:
+def _spring(prim: Any, metres: float) -> SpringRange:
     """Its lengths; -1 is the one at rest."""
     lengths = _numbers(prim, "mjc:springlength")
     if len(lengths) != 2 or lengths[0] == -1.0:
         return RELAXED
-    return Spring((lengths[0] * metres, lengths[1] * metres), at_rest=False)
+    return SpringRange((lengths[0] * metres, lengths[1] * metres), at_rest=False)
 
 
 # ---- paths -----------------------------------------------------------------------------------------------------------
