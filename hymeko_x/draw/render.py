@@ -145,14 +145,14 @@ class Studio:
         import mujoco
 
         keys = {self.model.key(number).name: number for number in range(self.model.nkey)}
-        wanted = pose or ("home" if "home" in keys and not self._wanted.is_authored else None)
-        if wanted is not None and wanted in keys:
-            mujoco.mj_resetDataKeyframe(self.model, self.data, keys[wanted])
-        elif wanted is not None and wanted.endswith(".json"):
-            self._take_positions(_positions(Path(wanted)), wanted)
-        elif wanted is not None and wanted != "home":
+        pose = pose or ("home" if "home" in keys and not self._wanted.is_authored else None)
+        if pose is not None and pose in keys:
+            mujoco.mj_resetDataKeyframe(self.model, self.data, keys[pose])
+        elif pose is not None and pose.endswith(".json"):
+            self._take_positions(_positions(Path(pose)), pose)
+        elif pose is not None and pose != "home":
             known = ", ".join(sorted(name for name in keys if name)) or "none"
-            raise refuse(codes.UNDEFINED_REFERENCE, f"{self._name} has no pose '{wanted}'", hint=f"keyframes: {known}; or a file NAME.json")
+            raise refuse(codes.UNDEFINED_REFERENCE, f"{self._name} has no pose '{pose}'", hint=f"keyframes: {known}; or a file NAME.json")
         mujoco.mj_forward(self.model, self.data)
 
     def _take_joints_of(self, other: Studio) -> None:
