@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from hymeko_x.factor.find import is_usual
 from hymeko_x.factor.flat import every_form, to_items
 from hymeko_x.factor.forms import Call, Factored, FormElement, Hole, Macro, MacroParameter, Value, joined
-from hymeko_x.factor.macros import free_name, identifier
+from hymeko_x.factor.macros import identifier
+from hymeko_x.ir.names import free_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -119,7 +120,7 @@ def _parts(text: Text, dialect: Dialect) -> Iterator[str]:
 
 def _name(part: str, wish: str, taken: set[str]) -> str:
     base = part.rpartition("/")[2] if "/" in part else wish
-    return free_name([identifier(base) if any(map(str.isalnum, base)) else "value"], taken)
+    return free_name(identifier(base) if any(map(str.isalnum, base)) else "value", taken.__contains__, "")
 
 
 def _rewritten(items: tuple[Item, ...], named: Mapping[str, str], dialect: Dialect) -> tuple[Item, ...]:

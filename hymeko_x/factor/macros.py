@@ -11,10 +11,9 @@ from hymeko_x.factor.find import NAME, family_of, is_usual
 from hymeko_x.factor.flat import Form, OpenMacro
 from hymeko_x.factor.forms import Hole, Signed
 from hymeko_x.factor.words import limb_of_most
+from hymeko_x.ir.names import first_free_name
 
 if TYPE_CHECKING:
-    from collections.abc import Container
-
     from hymeko_x.factor.find import Family, Run
     from hymeko_x.factor.flat import FactoringState, Flat
     from hymeko_x.factor.forms import Dialect, Text
@@ -183,7 +182,7 @@ class Namer:
         names: list[str] = []
         for number, column in enumerate(self._family.unified.columns):
             taken = {*names, *self._dialect.taken}
-            names.append(free_name(self._wishes(number, column), taken))
+            names.append(first_free_name(self._wishes(number, column), taken, ""))
         return tuple(names)
 
     def _wishes(self, number: int, column: int) -> list[str]:
@@ -208,7 +207,8 @@ class Namer:
         wishes = self._macro_wishes()
         places = len(self._family.runs) + 1
         short = [wish for wish in wishes if (len(wish) - NAME) * places < self._family.saving]
-        return free_name(short or [min([*wishes, identifier(self._forms[0].tag)], key=len)], {*self._grown.macros, *self._dialect.taken})
+        taken = {*self._grown.macros, *self._dialect.taken}
+        return first_free_name(short or [min([*wishes, identifier(self._forms[0].tag)], key=len)], taken, "")
 
     def _macro_wishes(self) -> list[str]:
         hints = Counter(form.hint for form in self._forms if form.hint)
@@ -266,14 +266,3 @@ def identifier(text: str) -> str:
     """The text as a name that every format accepts."""
     name = re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_")
     return name if name and not name[0].isdigit() else f"x{name}"
-
-
-def free_name(wishes: list[str], taken: Container[str]) -> str:
-    """The first wish that is not taken, else the last one with the first free number from 2 on."""
-    for wish in wishes:
-        if wish not in taken:
-            return wish
-    number = 2
-    while f"{wishes[-1]}{number}" in taken:
-        number += 1
-    return f"{wishes[-1]}{number}"

@@ -11,7 +11,7 @@ from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import Id
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 
     from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.ir.parts import Joint
@@ -58,6 +58,14 @@ def free_name(wanted: str, is_taken: Callable[[str], bool], mark: str = "#") -> 
     while is_taken(name):
         name, number = f"{wanted}{mark}{number}", number + 1
     return name
+
+
+def first_free_name(wanted: Sequence[str], taken: Container[str], mark: str = "#") -> str:
+    """The first of these names that is not taken; where all are, the last one as :func:`free_name` makes it free."""
+    for name in wanted:
+        if name not in taken:
+            return name
+    return free_name(wanted[-1], taken.__contains__, mark)
 
 
 def with_dof_names(joint: Joint, change: Callable[[str], str]) -> Joint:

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
-from hymeko_x.backends.hymeko.assemblies import take_name
 from hymeko_x.backends.hymeko.classes import apply_classes, in_reading_order, shortened, unmarked
 from hymeko_x.backends.hymeko.elements import AGAIN, PrintedElement, Unit, by_item, elements, group, is_open
 from hymeko_x.backends.hymeko.naming import names as best_names
 from hymeko_x.backends.hymeko.values import value_of
 from hymeko_x.factor.sets import candidates
 from hymeko_x.formats.hymeko import RESERVED
+from hymeko_x.ir.names import first_free_name
 from hymeko_x.language.syntax import Field, Item, Node, Stereotype
 from hymeko_x.language.templates import standard_templates
 
@@ -119,9 +119,11 @@ def _stereotypes(kind: str, members: list[PrintedElement], names: set[str]) -> l
             if best is None:
                 break
             units, served = best
-            definition = _Definition(_free_name(kind, units, served, names), units, base)
+            name = first_free_name([*best_names(kind, units, served)], names, "")
+            names.add(name)
+            definition = _Definition(name, units, base)
             for member in served:
-                member.refine(definition.name, units)
+                member.refine(name, units)
             found.append(definition)
             queue.append((served, served[0].types))
             gone = {member.path for member in served}
@@ -200,15 +202,6 @@ def _saving(kind: str, units: list[Unit], members: list[PrintedElement]) -> int:
         saved += sum(unit.cost for unit in member.left if texts.get(unit.slot) == unit.text)
         saved -= 0 if member.stereotype else max(name - before, 0)
     return saved - sum(unit.cost for unit in units) - name - 10
-
-
-# ---- naming --------------------------------------------------------------------------------------------------------------
-
-
-def _free_name(kind: str, units: list[Unit], members: list[PrintedElement], taken: set[str]) -> str:
-    """The first of the names that is free, which is taken then; the last of them with a number where none is."""
-    wanted = [*best_names(kind, units, members)]
-    return take_name(next((name for name in wanted if name not in taken), wanted[-1]), taken)
 
 
 # ---- applying ------------------------------------------------------------------------------------------------------------
