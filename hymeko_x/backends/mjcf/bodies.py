@@ -67,7 +67,7 @@ def _is_collision(view: ShapeView) -> bool:
 
 def _add_inertial(sheet: MjcfSheet, body: BodyTag, inertial: Inertial) -> None:
     """Mass, centre of mass, and the tensor about it in body axes: three numbers where the products are zero, else six."""
-    if not sheet.from_mjcf:
+    if not sheet.from_mjcf and (inertial.tensor is None or inertial.written is not None):
         inertial = replace(inertial, tensor=inertial.tensor or _NO_TENSOR, written=None)
     notations = sheet.notations(body.key)
     frame = body.frame_of(sheet, body.key, "inertial/")

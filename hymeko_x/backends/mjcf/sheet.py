@@ -41,7 +41,8 @@ Attributes = dict[str, str | None]
 """The attributes of an element in the order of printing; None is not printed."""
 
 _EMPTY: Mapping[str, str] = {}
-_SIGNED_ZERO = re.compile(r"(?<!\S)-0(?!\S)")
+_SIGNED_ZERO = re.compile(r"-0(?!\S)(?<!\S-0)")
+"""A zero with a sign. It begins with its letters, by which a search finds it faster than by what may not stand before them."""
 _REFERENCES = frozenset(("mesh", "material", "texture"))
 _PLAIN: Mapping[str, str] = {
     "body": "body",
@@ -222,6 +223,8 @@ class MjcfSheet(Struct):
 
     def write_kept(self, section: str) -> None:
         """The sections of this name that are written as they are, each behind the comments before it; for ``""`` all that is left."""
+        if not self.kept:
+            return
         waiting: list[tuple[str, Extra]] = []
         left: list[tuple[str, Extra]] = []
         for tag, extra in self.kept:

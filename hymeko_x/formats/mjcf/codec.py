@@ -249,9 +249,11 @@ _AT_HOME: Mapping[str, str] = MappingProxyType(
 
 def undone(group: AttributeGroup, base: Mapping[str, str], texts: Mapping[str, str]) -> dict[str, str]:
     """What undoes the position or the orientation of a class in an element that has none."""
-    is_turned = any(name in TURNS for name in texts)
     lacking = [name for name in group.names if name in base and name in _AT_HOME and name not in texts]
-    return {name: _AT_HOME[name] for name in lacking if "fromto" not in texts and not (is_turned and name in TURNS)}
+    if not lacking or "fromto" in texts:
+        return {}
+    is_turned = any(name in TURNS for name in texts)
+    return {name: _AT_HOME[name] for name in lacking if not (is_turned and name in TURNS)}
 
 
 # ---- plain groups ------------------------------------------------------------------------------------------------------------
