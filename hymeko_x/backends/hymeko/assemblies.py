@@ -23,7 +23,7 @@ from hymeko_x.formats.hymeko import AXES, RESERVED, ROLE_MOVES
 from hymeko_x.ir.digits import number_text
 from hymeko_x.ir.ids import KINDS
 from hymeko_x.ir.mechanism import Id
-from hymeko_x.ir.names import free_name
+from hymeko_x.ir.names import first_free_name
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import ArcItem, Comment, Expression, Field, Node, Parameter, Ref, Stereotype
 
@@ -234,7 +234,7 @@ def _template(pieces: list[Piece], taken: set[str], elements: set[str]) -> tuple
     plain = iter([_number(text, names[len(of_texts.parameters) :]) for text in of_numbers.texts])
     written = iter([_text(text, names) for text in of_texts.texts])
     body = _filled(pieces[0].items, lambda leaf: next(plain) if isinstance(leaf.value, float) else next(written))
-    name = take_name(_name(pieces), taken | elements)
+    name = take_name([_name(pieces)], taken | elements)
     template = _with_defaults(Node(name, body, (Stereotype(Ref(("assembly",))),), ()), names, values)
     instances = [_instance(piece, template, values, place) for place, piece in enumerate(pieces)]
     before = sum(_letters(Node(piece.home, piece.items, template.stereotypes)) for piece in pieces)
@@ -280,17 +280,16 @@ def _parameter_names(numbers: Unified, fields: list[str], texts: Unified, text_f
         used = {
             field for field, text in zip(text_fields, texts.texts, strict=True) if not isinstance(text, str) and Hole(str(number)) in text
         }
-        names.append(take_name(used.pop() if len(used) == 1 and used < _TEXTS_NAMED_AFTER else "name", taken))
+        names.append(take_name([used.pop() if len(used) == 1 and used < _TEXTS_NAMED_AFTER else "name"], taken))
     for column, is_sign in zip(numbers.columns, numbers.is_sign, strict=True):
         field = fields[column]
-        free = [sign for sign in _SIGNS if sign not in taken] if is_sign else []
-        names.append(take_name(free[0] if free else field if field in _NAMED_AFTER and not is_sign else "value", taken))
+        names.append(take_name([*_SIGNS, "value"] if is_sign else [field if field in _NAMED_AFTER else "value"], taken))
     return names
 
 
-def take_name(wanted: str, taken: set[str]) -> str:
-    """The name, with a number behind it when it is taken; then it is taken."""
-    name = free_name(wanted, taken.__contains__, "")
+def take_name(wanted: Sequence[str], taken: set[str]) -> str:
+    """The first of these names that is free, or the last one with a number behind it; then it is taken."""
+    name = first_free_name(wanted, taken, "")
     taken.add(name)
     return name
 

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
+from hymeko_x.backends.hymeko.assemblies import take_name
 from hymeko_x.backends.hymeko.classes import apply_classes, in_reading_order, shortened, unmarked
 from hymeko_x.backends.hymeko.elements import AGAIN, PrintedElement, Unit, by_item, elements, group, is_open
 from hymeko_x.backends.hymeko.naming import names as best_names
 from hymeko_x.backends.hymeko.values import value_of
 from hymeko_x.factor.sets import candidates
 from hymeko_x.formats.hymeko import RESERVED
-from hymeko_x.ir.names import first_free_name
 from hymeko_x.language.syntax import Field, Item, Node, Stereotype
 from hymeko_x.language.templates import standard_templates
 
@@ -119,8 +119,7 @@ def _stereotypes(kind: str, members: list[PrintedElement], names: set[str]) -> l
             if best is None:
                 break
             units, served = best
-            name = first_free_name([*best_names(kind, units, served)], names, "")
-            names.add(name)
+            name = take_name([*best_names(kind, units, served)], names)
             definition = _Definition(name, units, base)
             for member in served:
                 member.refine(name, units)
