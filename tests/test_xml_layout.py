@@ -1,4 +1,4 @@
-"""The layout of kept XML: the same content, whatever its white space was, and nothing left to do a second time."""
+"""The layout of kept XML: the same content, whatever its white space was, and nothing left to do a second time; and of comments."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from hymeko_x.xml.layout import laid_out
+from hymeko_x.xml.text import comment_markup
 
 BLANK = st.sampled_from([" ", "  ", "\n", "\n  ", "\n\t", " \n    "])
 NAMES = st.sampled_from(["a", "b", "gz:c", "d-e"])
@@ -72,3 +73,24 @@ def test_each_node_has_a_line_of_its_own_where_there_are_lines(text: str, wanted
 def test_a_text_on_one_line_is_spread_where_that_is_asked_for() -> None:
     assert laid_out("<a><b/><c>1 2</c></a>", 1) == "<a><b/><c>1 2</c></a>"
     assert laid_out("<a><b/><c>1 2</c></a>", 1, spread=True) == "<a>\n    <b/>\n    <c>1 2</c>\n  </a>"
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("---- links ----", "==== links ===="),
+        ("|---|-----|", "|===|=====|"),
+        ("--verbose", "- -verbose"),
+        ("a --> b", "a - -> b"),
+        ("a - b-", "a - b-"),
+    ],
+)
+def test_a_line_of_hyphens_in_a_comment_keeps_its_length(text: str, wanted: str) -> None:
+    assert comment_markup(text) == f"<!-- {wanted} -->"
+
+
+@given(st.text("->!< a"))
+def test_every_comment_is_well_formed_xml_and_reads_back_as_it_was_written(text: str) -> None:
+    written = comment_markup(text)
+    (comment,) = etree.fromstring(f"<root>{written}</root>")
+    assert comment_markup(comment.text[1:-1]) == written

@@ -11,6 +11,7 @@ from lxml import etree
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.xml.text import without_hyphens_in_a_row
 from hymeko_x.xml.tree import TreeBuilder
 
 if TYPE_CHECKING:
@@ -83,11 +84,17 @@ def _tidy(root: Any) -> None:
         if element.getparent() is not None and (_is_declaration(element) or element.tag is etree.Entity):
             _drop(element)
         elif element.tag is etree.Comment:
-            element.text = re.sub("-(?=-)|-$", "- ", element.text or "")
+            element.text = _comment_text(element.text or "")
         elif isinstance(element.tag, str):
             if not _NAME.fullmatch(element.tag):
                 element.tag = "_" + re.sub(r"[^\w.-]", "_", element.tag)
             _tidy_attributes(element)
+
+
+def _comment_text(text: str) -> str:
+    """The text of a comment without hyphens that XML does not allow, also not at its end."""
+    plain = without_hyphens_in_a_row(text)
+    return f"{plain} " if plain.endswith("-") else plain
 
 
 def _drop(node: Any) -> None:
@@ -187,8 +194,10 @@ def _with_clean_tags(text: str) -> tuple[str, str]:
     for piece in _PIECES.findall(text):
         clean = piece
         if piece.startswith("<!--"):
-            clean = "<!--" + re.sub("-(?=-)|-$", "- ", piece[4:].removesuffix("-->")) + "-->"
-            changed |= {"'--' within a comment; read as '- -'"} if clean != piece else set()
+            text = piece[4:].removesuffix("-->")
+            clean = f"<!--{_comment_text(text)}-->"
+            message = "'---' within a comment; read as '==='" if "---" in text else "'--' within a comment; read as '- -'"
+            changed |= {message} if clean != piece else set()
         elif not piece.startswith(("<!", "<?")):
             clean, count = _BARE_AMPERSAND.subn("&amp;", piece)
             changed |= {"'&' stands where '&amp;' is needed; read as '&'"} if count else set()

@@ -17,6 +17,7 @@ _QUOTED = (('"', "&quot;"), ("\n", "&#10;"), ("\r", "&#13;"), ("\t", "&#9;"))
 _SPECIAL = re.compile(r'[&<>"\x00-\x1f\ud800-\udfff\ufffe\uffff]')
 _IMPOSSIBLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 _IMPOSSIBLE_IN_COMMENT = re.compile(r"[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
+_HYPHENS = re.compile("--+")
 
 
 def escaped(text: str) -> str:
@@ -56,10 +57,13 @@ def attributes_text(attributes: Mapping[str, str | None]) -> str:
 
 
 def comment_markup(text: str) -> str:
-    """A comment of whatever format as an XML comment, in which ``--`` is not allowed."""
-    while "--" in text:
-        text = text.replace("--", "- -")
-    return f"<!-- {_IMPOSSIBLE_IN_COMMENT.sub(chr(0xFFFD), text)} -->"
+    """A comment of whatever format as an XML comment."""
+    return f"<!-- {_IMPOSSIBLE_IN_COMMENT.sub(chr(0xFFFD), without_hyphens_in_a_row(text))} -->"
+
+
+def without_hyphens_in_a_row(text: str) -> str:
+    """The text of a comment without ``--``, which XML does not allow: two get a blank between them, a line of them is one of ``=``."""
+    return text if "--" not in text else _HYPHENS.sub(lambda found: "- -" if found[0] == "--" else "=" * len(found[0]), text)
 
 
 def is_name(text: str) -> bool:

@@ -96,6 +96,12 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
             "2:26: warning[HX005]: '--' within a comment; read as '- -'",
         ],
     ),
+    "lines of hyphens in comments": (
+        robot(LINK + "<!------ a ----->"),
+        [
+            "2:23: warning[HX005]: '---' within a comment; read as '==='",
+        ],
+    ),
     "latin letters in no known encoding": (
         robot('<link name="café"/>').encode("latin-1"),
         [
