@@ -18,7 +18,7 @@ from typing import Any
 
 REASONS: dict[str, str] = {
     "hymeko_x/frontends/xacro/child/": "runs in a process with limits of its own, in which nothing measures",
-    "hymeko_x/frontends/mjcf_child.py": "runs in a process with limits of its own, in which nothing measures",
+    "hymeko_x/frontends/mjcf/child.py": "runs in a process with limits of its own, in which nothing measures",
     "hymeko_x/verify/readers/sdf/": "runs in the process of Drake's reader, which ends without the handlers that save what was measured",
     "hymeko_x/verify/readers/apart.py": "serves in the process of a reader, which ends without the handlers that save what was measured",
     "hymeko_x/draw/view/": "answers to a browser: the tests that drive one are `full`",

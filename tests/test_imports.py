@@ -15,7 +15,7 @@ from hymeko_x import formats
 
 ROOT = Path(__file__).parents[1]
 LAYERS = (
-    ("collector", "memory", "diagnostics", "codes", "severities", "version"),
+    ("collector", "memory", "child_process", "diagnostics", "codes", "severities", "version"),
     ("ir",),
     ("source", "outline"),
     ("xml", "meshes", "networks"),

@@ -11,7 +11,6 @@ import contextlib
 import os
 import posixpath
 import re
-import sys
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,6 +19,7 @@ from msgspec import Struct, field
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.child_process import environment_with, python
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf.tree import parse, parse_text, verbatim
 from hymeko_x.formats.mjcf.words import EXPANDED_BY_MUJOCO, joined, settings_of
@@ -101,7 +101,7 @@ def folder_from(main: str, file: str) -> str:
 
 # ---- expansion by MuJoCo -------------------------------------------------------------------------------------------------------
 
-_CHILD = "hymeko_x.frontends.mjcf_child"
+_CHILD = Path(__file__).with_name("child.py")
 _LINE = re.compile(r",? line \d+\b")
 """A place in the text that MuJoCo gets, which is not the author's."""
 _SECTIONS = frozenset({"mujoco", "asset", "worldbody", "deformable", "contact", "equality", "tendon", "actuator", "sensor", "keyframe"})
@@ -189,22 +189,16 @@ def _run_mujoco(text: str, flat: FlatModel) -> tuple[int, str]:
         "text": len(parts[0]),
         "compile": flat.has_keyframes,
     }
-    command = [sys.executable, "-S", "-P", "-m", _CHILD, str(MOST_SECONDS), str(MOST_BYTES)]
+    command = python(str(_CHILD), str(MOST_SECONDS), str(MOST_BYTES))
     given = json.dumps(job).encode() + b"\n" + b"".join(parts)
+    environment = environment_with("mujoco")
     try:
-        ended = subprocess.run(command, input=given, env=_environment(), capture_output=True, timeout=2 * MOST_SECONDS, check=False)
+        ended = subprocess.run(command, input=given, env=environment, capture_output=True, timeout=2 * MOST_SECONDS, check=False)
     except subprocess.TimeoutExpired:
         return -1, f"it took more than {2 * MOST_SECONDS} s"
     if ended.returncode in (0, _REFUSED):
         return ended.returncode, ended.stdout.decode("utf-8", "replace")
     return -1, f"exit code {ended.returncode}"
-
-
-def _environment() -> dict[str, str]:
-    """Nothing that is the user's own: where the libraries are."""
-    folders = [str(Path(spec.origin).parents[1]) for name in ("hymeko_x", "mujoco") if (spec := find_spec(name)) and spec.origin]
-    kept = {name: os.environ[name] for name in ("SYSTEMROOT", "LD_LIBRARY_PATH") if name in os.environ}
-    return {"PYTHONPATH": os.pathsep.join(dict.fromkeys(folders)), **kept}
 
 
 # ---- the model for MuJoCo ------------------------------------------------------------------------------------------------------

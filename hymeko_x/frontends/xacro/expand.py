@@ -7,29 +7,25 @@ read is decided here, by the `Files` of the source. Python in ${} is the reason:
 from __future__ import annotations
 
 import json
-import os
 import re
 import subprocess
-import sys
 import threading
 from bisect import bisect_right
 from contextlib import suppress
 from functools import cached_property
-from importlib.util import find_spec
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.child_process import environment_with, python
 from hymeko_x.diagnostics import Diagnostic, Origin, refuse
 from hymeko_x.frontends.xacro import messages
 from hymeko_x.frontends.xacro.child.limits import ExpansionLimits
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from hymeko_x.diagnostics import Report
     from hymeko_x.frontends.xacro.messages import Message
     from hymeko_x.source import Source
@@ -154,8 +150,9 @@ class Conversation:
 
     def _started(self) -> subprocess.Popen[bytes]:
         pipe, nowhere = subprocess.PIPE, subprocess.DEVNULL
+        environment = environment_with("hymeko_x", "xacro", "yaml")
         try:
-            return subprocess.Popen(_command(), env=_environment(), stdin=pipe, stdout=pipe, stderr=nowhere)
+            return subprocess.Popen(python("-m", CHILD), env=environment, stdin=pipe, stdout=pipe, stderr=nowhere)
         except OSError as error:
             message = f"no process can be started for the expansion: {error}"
             raise refuse(codes.EXPANSION_FAILED, message, Origin(self._source.name)) from error
@@ -243,20 +240,3 @@ def _receive(process: subprocess.Popen[bytes]) -> tuple[Message, bytes]:
     if not 0 <= size <= MOST_BYTES:
         raise EOFError
     return message, process.stdout.read(size)
-
-
-def _command() -> list[str]:
-    """Python without site packages of its own, which would only cost time: the environment has the folders of the libraries."""
-    return [sys.executable, "-S", "-P", "-m", CHILD]
-
-
-def _environment() -> Mapping[str, str]:
-    """Nothing of the user's own: the folders of the libraries, and a fixed seed, so that the same file gives the same text."""
-    kept = {name: os.environ[name] for name in ("SYSTEMROOT", "LD_LIBRARY_PATH") if name in os.environ}
-    return {"PYTHONPATH": os.pathsep.join(_library_folders()), "PYTHONHASHSEED": "0", **kept}
-
-
-def _library_folders() -> list[str]:
-    """The folders of this program and of the two libraries of the child."""
-    places = [spec.origin for name in ("hymeko_x", "xacro", "yaml") if (spec := find_spec(name)) and spec.origin]
-    return list(dict.fromkeys(str(Path(place).parents[1]) for place in places))

@@ -1,6 +1,6 @@
-"""`python -m hymeko_x.frontends.mjcf_child SECONDS BYTES`: a model from standard input, expanded, to standard output.
+"""`python child.py SECONDS BYTES`: a model from standard input, expanded, to standard output.
 
-Models that copy or attach themselves end this process, and nothing else.
+Models that copy or attach themselves end this process, and nothing else. It runs as a file, since its package takes 0.1 s to load.
 In: one line of JSON with the sizes of the model's text, its sub-models and its files, then all of them in that order.
 Out: the expanded text, and exit code 0; or MuJoCo's message, and exit code 3.
 """
