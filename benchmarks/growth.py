@@ -44,8 +44,8 @@ def main(links: int, names: tuple[str, ...]) -> int:
         for name in names or (*WAYS, *YARDSTICKS):
             rounds = _asked(shape, name, links)
             grown = statistics.median([large / small for small, large in rounds])
-            said = ", ".join(f"{small * 1e6:.1f} -> {large * 1e6:.1f}" for small, large in rounds)
-            print(f"{shape}, {name}: {said} us per link, {grown:.2f} times", flush=True)
+            printed = ", ".join(f"{small * 1e6:.1f} -> {large * 1e6:.1f}" for small, large in rounds)
+            print(f"{shape}, {name}: {printed} us per link, {grown:.2f} times", flush=True)
             if name in WAYS:
                 kept = verdict(f"  growth from {links // 100} to {links} links", grown, BOUND, at_least=False) and kept
     return 0 if kept else 1
@@ -55,8 +55,8 @@ def _asked(shape: str, name: str, links: int) -> list[tuple[float, float]]:
     """The times per link in s of a way, for few links and for many, as another process says them; infinite where it does not end."""
     command = [sys.executable, "-m", "benchmarks.growth", "--measure", shape, name, str(links)]
     try:
-        said = subprocess.run(command, capture_output=True, check=True, timeout=LIMIT, text=True).stdout.splitlines()
-        return [(float(small), float(large)) for small, large in map(str.split, said)]
+        printed = subprocess.run(command, capture_output=True, check=True, timeout=LIMIT, text=True).stdout.splitlines()
+        return [(float(small), float(large)) for small, large in map(str.split, printed)]
     except subprocess.SubprocessError:
         return [(1.0, float("inf"))]
 

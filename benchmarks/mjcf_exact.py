@@ -60,18 +60,18 @@ def main() -> int:
     parser.add_argument("--table", type=Path, help="write the table to this file")
     parser.add_argument("--match", default="", help="only files whose path has this in it")
     parser.add_argument("--verbose", action="store_true", help="print a line for every file")
-    said = parser.parse_args()
-    folders = said.folders or sorted((cache_root(os.environ) / "corpus").iterdir())
+    options = parser.parse_args()
+    folders = options.folders or sorted((cache_root(os.environ) / "corpus").iterdir())
     rows = []
     for folder in folders:
-        findings = [examined(path) for path in models(folder) if said.match in str(path)]
+        findings = [examined(path) for path in models(folder) if options.match in str(path)]
         rows += [(_CHECKSUM.sub("", folder.name), findings)] if findings else []
         for found in findings:
-            if said.verbose or (found.direct, found.text) != (EQUAL, EQUAL):
+            if options.verbose or (found.direct, found.text) != (EQUAL, EQUAL):
                 print(f"{found.path}\t{found.direct}\t{found.text}\t{found.seconds:.1f} s\t{found.why}", flush=True)
     print(table(rows))
-    if said.table:
-        said.table.write_text(page(rows))
+    if options.table:
+        options.table.write_text(page(rows))
     bad = ("different", "refused by us alone", "failed")
     return 1 if any(_worst(found) in bad for _, findings in rows for found in findings) else 0
 
@@ -110,7 +110,7 @@ def _examine(path: Path) -> Finding:
     mechanism = _or_words(lambda: mjmodels.read(path))
     if isinstance(original, str) or isinstance(mechanism, str):
         state = _state(original, mechanism)
-        return Finding(str(path), state, state, " | ".join(said for said in (original, mechanism) if isinstance(said, str)))
+        return Finding(str(path), state, state, " | ".join(why for why in (original, mechanism) if isinstance(why, str)))
     direct, why = _judged(original, lambda: mjmodels.compiled(mjmodels.write(mechanism), path.parent))
     text, why_text = _judged(original, lambda: mjmodels.compiled(mjmodels.write(mjmodels.through_hymeko(mechanism)), path.parent))
     return Finding(str(path), direct, text, why or why_text)

@@ -30,11 +30,11 @@ def run(command: Sequence[str], *, limit: float | None = None) -> tuple[float, f
     starter = [sys.executable, "-S", "-c", _STARTER, *command]
     with subprocess.Popen(starter, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment, start_new_session=True) as process:
         try:
-            said, complaint = process.communicate(timeout=limit)
+            printed, complaint = process.communicate(timeout=limit)
         except BaseException:
             os.killpg(process.pid, signal.SIGKILL)
             raise
     if process.returncode:
-        raise subprocess.CalledProcessError(process.returncode, command, said, complaint)
-    seconds, memory = map(float, said.split())
+        raise subprocess.CalledProcessError(process.returncode, command, printed, complaint)
+    seconds, memory = map(float, printed.split())
     return seconds, memory / (2**20 if sys.platform == "darwin" else 2**10)

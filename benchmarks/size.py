@@ -42,12 +42,12 @@ def letters(text: str) -> int:
 
 def ratio(robot: Path, form: str) -> float:
     """The letters of the robot's HyMeKo text for one letter of its source; included files count as well."""
-    said = _said(robot, form)
-    plain = TOKENS.sub(lambda token: "" if token[0].startswith(("#", "//", "/*")) else token[0], said)
+    text = _printed(robot, form)
+    plain = TOKENS.sub(lambda token: "" if token[0].startswith(("#", "//", "/*")) else token[0], text)
     return letters(plain) / _source_letters(robot)
 
 
-def _said(robot: Path, form: str) -> str:
+def _printed(robot: Path, form: str) -> str:
     """The HyMeKo text of a robot, with the names of its files as its author wrote them."""
     return write(_READERS[form](open_source(str(robot)), Report()).mechanism, Options(), Report()).main.decode()
 
@@ -62,7 +62,7 @@ _MESH_ARRAY = re.compile(
 def usda_ratio(robot: Path) -> float:
     """The letters of a URDF's HyMeKo text for one letter of its USD text, in which no array of a mesh is counted."""
     stage = _MESH_ARRAY.sub("", hx.dumps(hx.load(robot).mechanism, "usd"))
-    return _code(_said(robot, "urdf"), "hymeko") / _code(stage, "usd")
+    return _code(_printed(robot, "urdf"), "hymeko") / _code(stage, "usd")
 
 
 def _code(text: str, form: str) -> int:

@@ -200,7 +200,7 @@ CIRCULAR_VALUE = Code(
 REWRITTEN = Code(
     "HX101",
     "something was rewritten for the target",
-    "The target cannot say this as the source did. It was rewritten into what the target has; the message says how.",
+    "The target cannot represent this as the source did. It was rewritten into what the target has; the message says how.",
 )
 RENAMED = Code("HX102", "an element was renamed for the target", "The target does not allow the name, or uses it for something else.")
 INERTIA_REPAIRED = Code(
@@ -258,7 +258,7 @@ FOR_TARGET = Code(
     "something was added or changed for the program that takes the output",
     "--for names this program, or an option asks for what it needs. docs/targets.md lists what each program expects, and why.",
 )
-NOT_SAID = Code("HX104", "the target has no word for this", "The target cannot say this, and nothing comes near.")
+NOT_REPRESENTED = Code("HX104", "the target has no word for this", "The target cannot represent this, and nothing comes near.")
 
 # ---- HX2xx: assets ---------------------------------------------------------------------------------------------------
 ASSET_NOT_FOUND = Code(

@@ -51,5 +51,5 @@ def chain(
     return Mechanism("chain", Hypergraph({**bodies, **(vertices or {})}, {**links, **(edges or {})}))
 
 
-def hinge(**said: object) -> Joint:
-    return Joint((Dof(DofKind.HINGE, **said),))  # type: ignore[arg-type]
+def hinge(**fields: object) -> Joint:
+    return Joint((Dof(DofKind.HINGE, **fields),))  # type: ignore[arg-type]

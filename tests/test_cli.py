@@ -28,10 +28,10 @@ def hymeko_x(*words: str, stdin: bytes = b"", cwd: Path | None = None, **environ
 
 def test_help_lists_every_verb_and_exit_code(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == exits.DONE
-    said = capsys.readouterr().out
-    assert [name for name, verb in VERBS.items() if f"  {name:<10} {verb.summary}\n" not in said] == []
-    assert [group for group in GROUPS if f"\n{group}:\n" not in said] == []
-    assert "70 a bug of ours" in said
+    printed = capsys.readouterr().out
+    assert [name for name, verb in VERBS.items() if f"  {name:<10} {verb.summary}\n" not in printed] == []
+    assert [group for group in GROUPS if f"\n{group}:\n" not in printed] == []
+    assert "70 a bug of ours" in printed
 
 
 def test_no_words_at_all_are_a_usage_error_that_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
@@ -75,10 +75,10 @@ def test_a_file_in_the_place_of_a_verb_is_met_with_the_verbs_for_files(tmp_path:
 )
 def test_a_mistake_in_the_options_costs_one_line(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == exits.USAGE
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert said.err.startswith(f"hymeko-x {message}")
-    assert said.err.count("\n") == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.startswith(f"hymeko-x {message}")
+    assert printed.err.count("\n") == 1
 
 
 def test_formats_prints_the_table(capsys: pytest.CaptureFixture[str]) -> None:
@@ -135,9 +135,9 @@ def test_corpus_list_tells_what_is_here(tmp_path: Path, capsys: pytest.CaptureFi
 
 def test_corpus_fetch_of_an_unknown_package_fails_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["corpus", "fetch", "no-such-robot"]) == exits.FAILED
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert said.err.startswith("error[HX211]: the catalogue has no package 'no_such_robot'\n  hint: it has: example_robot_data, ")
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.startswith("error[HX211]: the catalogue has no package 'no_such_robot'\n  hint: it has: example_robot_data, ")
 
 
 def test_corpus_fetch_without_a_network_stops_at_the_first_package(tmp_path: Path) -> None:
@@ -165,9 +165,9 @@ def test_a_refusal_is_one_diagnostic_and_exit_1(capsys: pytest.CaptureFixture[st
 def test_a_bug_is_one_diagnostic_with_its_place_and_exit_70(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("HYMEKO_X_DEBUG", raising=False)
     assert exits.guarded("import", lambda: len(terminal.render(None, True))) == exits.BUG  # type: ignore[arg-type]
-    said = capsys.readouterr().err
-    assert said.startswith("error[HX901]: AttributeError at cli/terminal.py:")
-    assert "Traceback" not in said
+    printed = capsys.readouterr().err
+    assert printed.startswith("error[HX901]: AttributeError at cli/terminal.py:")
+    assert "Traceback" not in printed
 
 
 def test_a_bug_shows_its_traceback_to_whoever_asks(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -202,14 +202,14 @@ def test_a_reader_that_leaves_early_is_no_error() -> None:
 
 
 def test_a_diagnostic_in_colour_says_the_same_as_a_plain_one() -> None:
-    said = Diagnostic(
+    diagnostic = Diagnostic(
         codes.ZERO_AXIS, Severity.WARNING, "an axis is zero", Origin("a.urdf", 7), hint="say which", excerpt=("  7 | <axis/>",)
     )
-    coloured = terminal.render(said, True)
-    assert coloured != str(said)
+    coloured = terminal.render(diagnostic, True)
+    assert coloured != str(diagnostic)
     for style in ("1;33", "1;32", "1", "0"):
         coloured = coloured.replace(f"\x1b[{style}m", "")
-    assert coloured == str(said) == terminal.render(said, False)
+    assert coloured == str(diagnostic) == terminal.render(diagnostic, False)
 
 
 def test_a_long_list_of_one_severity_is_cut_and_counted(capsys: pytest.CaptureFixture[str]) -> None:

@@ -120,7 +120,7 @@ def test_the_report_names_source_target_diagnostics_and_losses(folder: Path) -> 
     assert report["source"] == {"path": "arm.urdf", "format": "urdf"}
     assert report["target"] == {"path": "arm.hymeko", "format": "hymeko"}
     assert report["losses"] == []
-    assert [(said["code"], said["severity"], said["file"], said["line"]) for said in report["diagnostics"]] == [
+    assert [(item["code"], item["severity"], item["file"], item["line"]) for item in report["diagnostics"]] == [
         ("HX044", "warning", "arm.urdf", 20)
     ]
     assert set(report["diagnostics"][0]) == {"code", "severity", "message", "file", "line", "element", "hint"}
@@ -143,8 +143,8 @@ def test_a_loss_is_measured_by_reading_the_result_back(
     lossy = Package(main_file, with_residue=lambda residue: main_file)
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: lossy)
     assert main(["convert", "arm.urdf", "lossy.xacro", "--json", "--keep=inside"]) == exits.DONE
-    said = capsys.readouterr()
-    assert json.loads(said.out)["losses"] == [
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["losses"] == [
         {
             "element": "joint 'elbow'",
             "target_element": "joint 'elbow'",
@@ -160,7 +160,7 @@ def test_a_loss_is_measured_by_reading_the_result_back(
             "line": 15,
         }
     ]
-    assert said.err.splitlines() == [
+    assert printed.err.splitlines() == [
         "wrote lossy.xacro (2 bodies, 1 joint)",
         "kept: effort limit of 1 joint, 1 field or element in all",
         "-v lists each with its place, --report FILE.json has all",
@@ -345,15 +345,15 @@ def test_standard_output_refers_to_files_where_they_are_and_says_which_it_cannot
 ) -> None:
     (meshed / "arm.urdf").write_text(ARM.replace('<link name="base">', VISUAL.replace("package://shapes", "far/shapes")))
     assert main(["export", "arm.urdf", "--to", "urdf"]) == exits.DONE
-    said = capfd.readouterr()
-    assert 'filename="far/shapes/meshes/t.stl"' in said.out
-    assert said.err == ""
+    printed = capfd.readouterr()
+    assert 'filename="far/shapes/meshes/t.stl"' in printed.out
+    assert printed.err == ""
     assert main(["export", "arm.urdf", "--to", "mjcf", "--base", "fixed"]) == exits.DONE
     assert "warning[HX204]: standard output cannot carry meshes/t.stl\n" in capfd.readouterr().err
     assert sorted(path.name for path in meshed.iterdir()) == ["arm.urdf", "far", "out"]
 
 
-def test_the_format_can_be_said_where_name_and_content_mislead(folder: Path) -> None:
+def test_the_format_can_be_given_where_name_and_content_mislead(folder: Path) -> None:
     (folder / "arm.hymeko").write_text(ARM)
     assert main(["info", "arm.hymeko"]) == exits.FAILED
     assert main(["info", "arm.hymeko", "--from", "urdf"]) == exits.DONE
@@ -362,9 +362,9 @@ def test_the_format_can_be_said_where_name_and_content_mislead(folder: Path) -> 
 def test_diagnostics_go_to_standard_error_with_their_place(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (folder / "arm.urdf").write_text(WARNED)
     assert main(["import", "arm.urdf"]) == exits.DONE
-    said = capfd.readouterr()
-    assert said.err.startswith("arm.urdf:20: warning[HX044]: ")
-    assert "HX044" not in said.out
+    printed = capfd.readouterr()
+    assert printed.err.startswith("arm.urdf:20: warning[HX044]: ")
+    assert "HX044" not in printed.out
 
 
 def test_what_vanishes_is_dropped_and_what_changes_is_approximated(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -41,7 +41,7 @@ def test_two_robots_with_meshes_of_one_name_keep_their_own(suffix: str, tmp_path
     out.mkdir()
     for name, size in (("one", 1), ("two", 2), ("two", 3), ("one", 4)):
         result = hx.convert(robot(tmp_path, name, size), out / f"{name}.{suffix}", assets="copy")
-        assert [said.code for said in result.report].count(codes.ASSETS_APART) == (name == "two")
+        assert [diagnostic.code for diagnostic in result.report].count(codes.ASSETS_APART) == (name == "two")
     assert (size_of(out / f"one.{suffix}"), size_of(out / f"two.{suffix}")) == (4, 3)
     assert list(out.rglob("*.part")) == []
 

@@ -42,7 +42,7 @@ def through(mechanism: Mechanism, format: str) -> Mechanism:
 
 
 def turned(mechanism: Mechanism) -> Mechanism:
-    """The same mechanism, said in another order. Shapes, whose ids tell their place on a body, stay in theirs."""
+    """The same mechanism in another order. Shapes, whose ids tell their place on a body, stay in theirs."""
     graph = mechanism.graph
     vertices = dict(reversed(graph.vertices.items()))
     shapes = {key: edge for key, edge in graph.edges.items() if key.kind == "shape"}

@@ -52,8 +52,8 @@ def session(text: str, folder: Path) -> str:
         if language != "console":
             return block[0]
         commands = [line for line in content.splitlines() if line.startswith("$ ")]
-        said = "".join(f"{command}\n{shell(command[2:], folder)}" for command in commands)
-        return f"```console\n{said}```\n"
+        printed = "".join(f"{command}\n{shell(command[2:], folder)}" for command in commands)
+        return f"```console\n{printed}```\n"
 
     return BLOCK.sub(rerun, text)
 
@@ -89,9 +89,9 @@ def test_the_python_in_the_readme_is_what_really_happens(tmp_path: Path, monkeyp
     monkeypatch.chdir(tmp_path)
     code = "".join(block[3] for block in blocks if block[1] == "pycon")
     test = doctest.DocTestParser().get_doctest(code, {}, "README.md", str(README), 0)
-    said: list[str] = []
+    printed: list[str] = []
     assert test.examples
-    assert doctest.DocTestRunner().run(test, out=said.append).failed == 0, "".join(said)
+    assert doctest.DocTestRunner().run(test, out=printed.append).failed == 0, "".join(printed)
 
 
 if __name__ == "__main__":

@@ -85,19 +85,19 @@ def test_an_error_ends_the_command_with_exit_1_and_nothing_written(
 ) -> None:
     out = wrong.with_name("out.xml")
     assert main([word.format(file=wrong, out=out) for word in words]) == exits.FAILED
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert f"{wrong}:1: error[HX027]: {MESSAGE}" in said.err
-    assert said.err.endswith(f"hymeko-x {words[0]}: stopped by errors, nothing was written; --lenient goes on with what they say\n")
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert f"{wrong}:1: error[HX027]: {MESSAGE}" in printed.err
+    assert printed.err.endswith(f"hymeko-x {words[0]}: stopped by errors, nothing was written; --lenient goes on with what they say\n")
     assert not out.exists()
 
 
 def test_lenient_goes_on_and_says_so(wrong: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = wrong.with_name("out.xml")
     assert main(["convert", str(wrong), str(out), "--lenient"]) == exits.DONE
-    said = capsys.readouterr().err
-    assert f"{wrong}:1: error[HX027]: {MESSAGE}" in said
-    assert "warning[HX009]: one error was passed over, as asked: the result is not what the input means" in said
+    printed = capsys.readouterr().err
+    assert f"{wrong}:1: error[HX027]: {MESSAGE}" in printed
+    assert "warning[HX009]: one error was passed over, as asked: the result is not what the input means" in printed
     assert out.is_file()
 
 

@@ -62,9 +62,9 @@ def test_check_fails_on_a_file_that_is_cut_off(tmp_path: Path, capsys: pytest.Ca
     path = tmp_path / "a.urdf"
     path.write_text('<robot name="r"><link name="a"/><link name="b"')
     assert main(["check", str(path)]) == exits.FAIL_ON
-    said = capsys.readouterr()
-    assert "error[HX010]: not well-formed" in said.err
-    assert "passed" not in said.out
+    printed = capsys.readouterr()
+    assert "error[HX010]: not well-formed" in printed.err
+    assert "passed" not in printed.out
 
 
 LINK = '<robot name="r"><link name="a">{}</link></robot>'
@@ -159,9 +159,9 @@ def test_a_base_that_is_not_what_is_asked_for_is_reported(
 @pytest.mark.parametrize("command", ["import a.hymeko > /dev/full", "import a.hymeko -o /dev/full", "info a.hymeko > /dev/full"])
 def test_a_full_device_is_one_diagnostic(command: str, tmp_path: Path) -> None:
     (tmp_path / "a.hymeko").write_text(PENDULUM)
-    code, said = hymeko_x(f"hymeko-x {command}", tmp_path)
+    code, printed = hymeko_x(f"hymeko-x {command}", tmp_path)
     assert code == exits.FAILED
-    assert [line for line in said.splitlines() if "error[HX002]" in line and "No space left on device" in line] == said.splitlines()
+    assert [line for line in printed.splitlines() if "error[HX002]" in line and "No space left on device" in line] == printed.splitlines()
 
 
 # ---- reading ---------------------------------------------------------------------------------------------------------------
@@ -169,9 +169,9 @@ def test_a_full_device_is_one_diagnostic(command: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("text", ["hello world", '{"links": []}', "name: arm\nlinks: 3\n", "a,b\n1,2\n", "", "#!/bin/sh\necho\n", "x = {}"])
 def test_unknown_content_is_no_format_and_never_parsed_as_hymeko(text: str, tmp_path: Path) -> None:
-    code, said = hymeko_x("hymeko-x info -", tmp_path, text.encode())
+    code, printed = hymeko_x("hymeko-x info -", tmp_path, text.encode())
     assert code == exits.FAILED
-    assert said.startswith("<stdin>: error[HX003]: neither suffix nor content of '<stdin>' belongs to a format\n")
+    assert printed.startswith("<stdin>: error[HX003]: neither suffix nor content of '<stdin>' belongs to a format\n")
 
 
 @pytest.mark.parametrize(
@@ -211,8 +211,8 @@ def test_a_centre_of_mass_that_is_given_stays() -> None:
 
 def test_the_verifier_sees_the_same_pendulum(tmp_path: Path) -> None:
     (tmp_path / "a.hymeko").write_text(PENDULUM)
-    code, said = hymeko_x("hymeko-x convert a.hymeko a.xml -q && hymeko-x verify a.hymeko a.xml", tmp_path)
-    assert (code, said.splitlines()[0]) == (exits.DONE, "same"), said
+    code, printed = hymeko_x("hymeko-x convert a.hymeko a.xml -q && hymeko-x verify a.hymeko a.xml", tmp_path)
+    assert (code, printed.splitlines()[0]) == (exits.DONE, "same"), printed
 
 
 # ---- graphs ----------------------------------------------------------------------------------------------------------------

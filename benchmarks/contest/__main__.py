@@ -36,10 +36,10 @@ def main() -> int:
     parser.add_argument("--ways", default="", help="only ways that have this in their name")
     parser.add_argument("--limit", type=float, default=120.0, help="seconds by the clock that one conversion may take, whoever does it")
     parser.add_argument("--table", action="store_true", help="measure nothing, only write the table")
-    said = parser.parse_args()
+    options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        if not said.table:
-            _measure(_robots(Path(folder), sorted(said.links), said.real), Path(folder), said.ways, said.limit)
+        if not options.table:
+            _measure(_robots(Path(folder), sorted(options.links), options.real), Path(folder), options.ways, options.limit)
     PAGE.write_text(page(PAGE.read_text("utf-8"), from_csv(RESULTS.read_text("utf-8"))), "utf-8")
     return 0
 

@@ -57,10 +57,10 @@ class _Runner(Struct):
         """Once more, unless it failed or was at work for long enough."""
         if self.reason or sum(self.times) > ENOUGH:
             return
-        said = self.session.ask(self.job(robot), self.limit)
-        self.reason = said.get("error", "") or self._missing(robot, said)
+        answer = self.session.ask(self.job(robot), self.limit)
+        self.reason = answer.get("error", "") or self._missing(robot, answer)
         if not self.reason:
-            self.times.append(said["seconds"])
+            self.times.append(answer["seconds"])
 
     def end(self, robot: Input) -> float | None:
         """The median time; what was measured first counts only when there is nothing else."""
@@ -93,8 +93,8 @@ class _Runner(Struct):
         self.job(robot)
         return [sys.executable, "-m", "hymeko_x", "convert", str(robot.path), str(self.out(robot))]
 
-    def _missing(self, robot: Input, said: dict[str, Any]) -> str:
-        if not self.way.target or "stage" in said or self.out(robot).is_file():
+    def _missing(self, robot: Input, answer: dict[str, Any]) -> str:
+        if not self.way.target or "stage" in answer or self.out(robot).is_file():
             return ""
         return "it wrote nothing and did not say why"
 

@@ -291,7 +291,7 @@ def is_reached(threshold: str | None, report: Report, losses: tuple[Loss, ...] |
         return False
     happened = {
         "error": report.worst == Severity.ERROR,
-        "loss": any(loss.fate != "kept" for loss in losses or ()) or any(diagnostic.code == codes.NOT_SAID for diagnostic in report),
+        "loss": any(loss.fate != "kept" for loss in losses or ()) or any(diagnostic.code == codes.NOT_REPRESENTED for diagnostic in report),
         "warning": report.worst == Severity.WARNING,
     }
     return any(happened[level] for level in FAIL_ON[: FAIL_ON.index(threshold) + 1])

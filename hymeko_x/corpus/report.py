@@ -98,7 +98,7 @@ def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow])
 
 
 def _unrepresented(tables: Tables) -> list[str]:
-    """What engines see in one file and cannot be said in the other, where the run asked for it."""
+    """What engines see in one file and the other cannot represent, where the run asked for it."""
     if "unsaid" not in tables.legs.columns:
         return []
     head = "## What a format cannot say of the other robot, as the engines see it"

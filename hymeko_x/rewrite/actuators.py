@@ -56,7 +56,9 @@ def drop_idle_actuators(mechanism: Mechanism, context: Context) -> Mechanism:
     idle = [key for key, _ in mechanism.vertices(Actuator) if key not in driving]
     for key in idle:
         hint = "a '-' arc of its drive leads to what it drives" if key in pointless else ""
-        context.report.warn(codes.NOT_SAID, f"{key} drives nothing, and is left out", mechanism.origin(key), element=str(key), hint=hint)
+        context.report.warn(
+            codes.NOT_REPRESENTED, f"{key} drives nothing, and is left out", mechanism.origin(key), element=str(key), hint=hint
+        )
     return without_actuators(mechanism, idle)
 
 

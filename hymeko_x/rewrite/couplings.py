@@ -31,7 +31,7 @@ def drop_inactive_couplings(mechanism: Mechanism, context: Context) -> Mechanism
     """Couplings that a program can switch on later are left out of formats in which a follower always follows."""
     gone = [key for key, coupling, _ in mechanism.edges(Coupling) if not coupling.active]
     for key in gone:
-        context.report.warn(codes.NOT_SAID, f"{key} is not active; it is left out", mechanism.origin(key), element=str(key))
+        context.report.warn(codes.NOT_REPRESENTED, f"{key} is not active; it is left out", mechanism.origin(key), element=str(key))
     return mechanism.replace(without=gone)
 
 
@@ -47,7 +47,7 @@ def make_couplings_scalar(mechanism: Mechanism, context: Context) -> Mechanism:
         reason = _problem(mechanism, arcs)
         if reason is not None:
             gone.append(key)
-            context.report.warn(codes.NOT_SAID, f"{key} is left out: {reason}", mechanism.origin(key), element=str(key))
+            context.report.warn(codes.NOT_REPRESENTED, f"{key} is left out: {reason}", mechanism.origin(key), element=str(key))
             continue
         held = next((arc.target for arc in arcs if arc.sign < 0 and _is_fixed(mechanism, arc.target)), None)
         if held is not None:
@@ -108,7 +108,7 @@ def drop_odd_tendons(mechanism: Mechanism, context: Context) -> Mechanism:
         wrong = wrong_path(replace(tendon, armature=0.0), arcs, mechanism.graph.edges) or _unplaced_site(mechanism, arcs, placed)
         if wrong is not None:
             gone.add(key)
-            context.report.warn(codes.NOT_SAID, f"{key} is left out: its path {wrong}", mechanism.origin(key), element=str(key))
+            context.report.warn(codes.NOT_REPRESENTED, f"{key} is left out: its path {wrong}", mechanism.origin(key), element=str(key))
     if not gone:
         return mechanism
     dependent = [key for key, edge in mechanism.graph.edges.items() if _leads_to(edge, gone)]

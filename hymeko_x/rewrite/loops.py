@@ -33,7 +33,7 @@ def open_second_parents(mechanism: Mechanism, context: Context) -> Mechanism:
         closures = _closures(view, Loop())
         words = "it is written as a closure of the loop" if closures else "a loop cannot be closed by such a joint, which is left out"
         tell = context.report.note if closures else context.report.warn
-        code = codes.REWRITTEN if closures else codes.NOT_SAID
+        code = codes.REWRITTEN if closures else codes.NOT_REPRESENTED
         tell(code, f"{view.id} holds {view.child}, which has another parent; {words}", mechanism.origin(view.id), element=str(view.id))
         edges |= {names.take("loop", view.id.name): closure for closure in closures}
     return mechanism.replace(edges=edges, without=[view.id for view in extra])
@@ -83,7 +83,7 @@ def leave_screws_open(mechanism: Mechanism, context: Context) -> Mechanism:
 def _report_left_out(key: Id, loop: Loop, mechanism: Mechanism, context: Context) -> None:
     kinds = " and a ".join(dof.kind.value for dof in loop.dofs)
     message = f"{key} closes a loop by a {kinds}, for which there is no closure; it is left out"
-    context.report.warn(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
+    context.report.warn(codes.NOT_REPRESENTED, message, mechanism.origin(key), element=str(key))
 
 
 def anchor_closures(mechanism: Mechanism, _context: Context) -> Mechanism:

@@ -47,7 +47,7 @@ def drop_empty_shapes(mechanism: Mechanism, context: Context, has_own_geometry: 
             continue
         gone.append(view.id)
         reason = "has no mesh" if lost else "has no geometry that the target can represent"
-        context.report.note(codes.NOT_SAID, f"{view.id} {reason}; it is left out", mechanism.origin(view.id), element=str(view.id))
+        context.report.note(codes.NOT_REPRESENTED, f"{view.id} {reason}; it is left out", mechanism.origin(view.id), element=str(view.id))
     return mechanism.replace(without=gone)
 
 
@@ -59,7 +59,7 @@ def drop_engine_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
     gone = [view.id for view in mechanism.every_shape() if isinstance(view.shape.geometry, NoShape)]
     for key in gone:
         message = f"{key} has a geometry that only {native.title} can represent; it is left out"
-        context.report.warn(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
+        context.report.warn(codes.NOT_REPRESENTED, message, mechanism.origin(key), element=str(key))
     return mechanism.replace(without=gone)
 
 
@@ -100,7 +100,10 @@ def keep_planes_static(mechanism: Mechanism, context: Context) -> Mechanism:
         if not all(shape.geometry.half_size):
             gone.append(key)
             context.report.warn(
-                codes.NOT_SAID, f"{key} is an infinite plane on a body that moves; it is left out", mechanism.origin(key), element=str(key)
+                codes.NOT_REPRESENTED,
+                f"{key} is an infinite plane on a body that moves; it is left out",
+                mechanism.origin(key),
+                element=str(key),
             )
             continue
         x, y = shape.geometry.half_size

@@ -39,7 +39,7 @@ def split_subsets(mechanism: Mechanism, context: Context) -> Mechanism:
         pieces = [] if view is None or view.shape.role is Role.COLLISION else list(_pieces(mechanism, view, subsets))
         if view is None or view.mesh is None or not pieces:
             message = f"{key} shows other materials on triangles that are not there to be seen; they are left out"
-            context.report.note(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
+            context.report.note(codes.NOT_REPRESENTED, message, mechanism.origin(key), element=str(key))
             continue
         split.show(view, view.mesh, pieces)
         users[view.mesh] -= view.shape.role is Role.VISUAL

@@ -136,14 +136,14 @@ def hover(document: Analysis, position: types.Position) -> types.Hover | None:
     word = word_at(document.text, offset)
     if word is None:
         return None
-    lines = list(_said(document, word, offset))
+    lines = list(_lines_about(document, word, offset))
     if not lines:
         return None
     value = types.MarkupContent(types.MarkupKind.Markdown, "\n\n".join(lines))
     return types.Hover(value, document.places.range(word.start, word.end))
 
 
-def _said(document: Analysis, word: PathWord, offset: int) -> Iterator[str]:
+def _lines_about(document: Analysis, word: PathWord, offset: int) -> Iterator[str]:
     name = word.path[-1]
     fields = _fields(document, _kind_around(document, offset))
     if len(word.path) == 1 and name in fields:

@@ -59,7 +59,7 @@ def report_what_is_missing(mechanism: Mechanism, context: Context) -> Mechanism:
     except ValueError:  # a rule before this one has reported it
         return mechanism
     for message in (*_unknown_values(model), *_pairs_without_contacts(model)):
-        context.report.warn(codes.NOT_SAID, f"{context.reason}: {message}", element="mechanism")
+        context.report.warn(codes.NOT_REPRESENTED, f"{context.reason}: {message}", element="mechanism")
     return mechanism
 
 

@@ -242,9 +242,9 @@ def test_differences_of_a_baseline_are_known(folder: Path, capsys: pytest.Captur
 def test_a_wrong_configuration_is_one_diagnostic(config: str, message: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("hymeko.toml").write_text(config)
     assert main(["agree"]) == exits.FAILED
-    said = capsys.readouterr().err
-    assert message in said
-    assert "HX304" in said
+    printed = capsys.readouterr().err
+    assert message in printed
+    assert "HX304" in printed
 
 
 # ---- what has changed --------------------------------------------------------------------------------------------------------

@@ -72,8 +72,8 @@ def compiles(mechanism: Mechanism, files: dict[str, bytes]) -> mujoco.MjModel:
 
 
 def test_a_binary_stl_is_copied_as_it_is_under_its_own_name() -> None:
-    result, new, copies, said = packed(with_meshes(Mesh("package://p/Link 0.STL")), {"package://p/Link 0.STL": STL})
-    assert (uris(result), new, said) == (["meshes/Link_0.stl"], {}, [])
+    result, new, copies, reported = packed(with_meshes(Mesh("package://p/Link 0.STL")), {"package://p/Link 0.STL": STL})
+    assert (uris(result), new, reported) == (["meshes/Link_0.stl"], {}, [])
     assert copies == {"meshes/Link_0.stl": "package://p/Link 0.STL"}
 
 
@@ -87,9 +87,9 @@ def test_equal_content_is_stored_once_and_other_content_gets_another_name() -> N
 
 def test_text_stl_becomes_binary_stl() -> None:
     files = {"a.stl": BOX.export(file_type="stl_ascii").encode()}
-    _, new, copies, said = packed(with_meshes(Mesh("a.stl")), files)
+    _, new, copies, reported = packed(with_meshes(Mesh("a.stl")), files)
     assert (list(new), copies) == (["meshes/a.stl"], {})
-    assert said == ["note HX202 mesh 'a/0' is STL as text or with a wrong length; MuJoCo reads only exact binary STL"]
+    assert reported == ["note HX202 mesh 'a/0' is STL as text or with a wrong length; MuJoCo reads only exact binary STL"]
     assert compiles(with_meshes(Mesh("a.stl")), files).mesh_facenum[0] == 12
 
 
@@ -112,9 +112,9 @@ def test_types_that_mujoco_does_not_read_become_obj(suffix: str) -> None:
 
 def test_a_visual_with_three_materials_becomes_three_shapes_with_their_colours() -> None:
     files = {"a.dae": dae()}
-    result, new, _, said = packed(with_meshes(Mesh("a.dae"), material=Id("material", "grey")), files)
+    result, new, _, reported = packed(with_meshes(Mesh("a.dae"), material=Id("material", "grey")), files)
     assert list(new) == ["meshes/a_red.obj", "meshes/a_green.obj", "meshes/a_blue.obj"]
-    assert said == ["note HX202 mesh 'a/0' has 3 appearances; each one becomes a mesh of its own"]
+    assert reported == ["note HX202 mesh 'a/0' has 3 appearances; each one becomes a mesh of its own"]
     views = result.shapes[body("b0")]
     assert [view.shape.name for view in views] == ["s0", None, None]
     assert [view.material.name for view in views if view.material] == ["red", "green", "blue"]
@@ -170,11 +170,11 @@ def test_an_obj_with_one_material_is_copied_and_brings_its_colour_along() -> Non
 def test_a_look_that_lies_on_a_line_is_left_out(other: str) -> None:
     obj = f"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl blue\n{other}".encode()
     files = {"a.obj": obj, "a.mtl": b"newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n"}
-    result, new, _, said = packed(with_meshes(Mesh("a.obj")), files)
+    result, new, _, reported = packed(with_meshes(Mesh("a.obj")), files)
     is_seen = other == "f 1 2 4\n"
     assert [view.material for view in result.shapes.get(body("b0"), ())] == [Id("material", "blue")] * is_seen
     assert list(new) == ["meshes/a_blue.obj"] * is_seen
-    assert said[1:] == (
+    assert reported[1:] == (
         ["note HX202 mesh 'a/0' shows 'red' on a line, where nothing is seen; that is left out"]
         if is_seen
         else ["warning HX203 mesh 'a/0': 'a.obj' cannot be read: all of its parts lie on lines; left out: visual 's0' of body 'b0'"]
@@ -191,9 +191,9 @@ def test_flat_tiny_and_mirrored_meshes_compile_in_every_role(data: bytes, scale:
 
 def test_a_flat_visual_is_copied_and_a_flat_collision_gets_a_thickness() -> None:
     assert packed(with_meshes(Mesh("a.obj")), {"a.obj": FLAT})[1:] == ({}, {"meshes/a.obj": "a.obj"}, [])
-    _, new, _, said = packed(with_meshes(Mesh("a.obj"), role=Role.COLLISION), {"a.obj": FLAT})
+    _, new, _, reported = packed(with_meshes(Mesh("a.obj"), role=Role.COLLISION), {"a.obj": FLAT})
     assert list(new) == ["meshes/a.obj"]
-    assert said == ["note HX202 mesh 'a/0' is flat, and a hull needs a volume: it gets a thickness of 0.0001 of its size"]
+    assert reported == ["note HX202 mesh 'a/0' is flat, and a hull needs a volume: it gets a thickness of 0.0001 of its size"]
 
 
 def test_a_flat_mesh_used_for_both_is_shown_as_it_is_and_felt_with_a_thickness() -> None:
@@ -233,8 +233,8 @@ def test_inline_data_stays_inline_unless_mujoco_would_refuse_it() -> None:
 )
 def test_a_mesh_that_cannot_be_used_leaves_out_its_shapes_with_a_warning(mesh: Mesh, files: dict[str, bytes], words: str) -> None:
     for role in (Role.VISUAL, Role.COLLISION):
-        result, new, copies, said = packed(with_meshes(mesh, role=role), files)
-        assert said == [f"warning {words}; left out: {role.value} 's0' of body 'b0'"]
+        result, new, copies, reported = packed(with_meshes(mesh, role=role), files)
+        assert reported == [f"warning {words}; left out: {role.value} 's0' of body 'b0'"]
         assert (dict(result.shapes), uris(result), new, copies) == ({}, [], {}, {})
 
 
@@ -257,8 +257,8 @@ def test_png_is_copied_and_other_images_are_converted() -> None:
 def test_an_image_that_cannot_be_read_is_left_out() -> None:
     for uri, data, code in (("a.png", None, "HX201"), ("a.png", png()[:40], "HX203"), ("a.tga", b"rubbish", "HX203")):
         files = {} if data is None else {uri: data}
-        result, _, _, said = packed(textured(uri), files)
-        assert [line.split()[1] for line in said] == [code]
+        result, _, _, reported = packed(textured(uri), files)
+        assert [line.split()[1] for line in reported] == [code]
         assert not list(result.vertices(Texture))
         assert compiles(textured(uri), files).ntex == 0
 
@@ -274,9 +274,9 @@ def test_reference_mode_copies_nothing_and_points_from_the_output_to_the_file() 
 def test_urdf_keeps_packages_and_copies_relative_files_to_the_same_place() -> None:
     names = ["package://p/a.stl", "model://p/b.stl", "meshes/c.stl", "../d.stl", "/abs/e.stl", "file:///abs/f.stl", "https://x.org/g.stl"]
     files = {name: name.encode() for name in names[2:6]}
-    result, new, copies, said = packed(with_meshes(*map(Mesh, names)), files, "urdf")
+    result, new, copies, reported = packed(with_meshes(*map(Mesh, names)), files, "urdf")
     assert uris(result) == [*names[:3], "meshes/d.stl", "meshes/e.stl", "meshes/f.stl", names[6]]
-    assert (new, said) == ({}, [])
+    assert (new, reported) == ({}, [])
     assert copies == {
         "meshes/c.stl": "meshes/c.stl",
         "meshes/d.stl": "../d.stl",
@@ -307,9 +307,9 @@ def test_urdf_can_be_made_self_contained() -> None:
 
 
 def test_a_reference_that_leads_nowhere_is_kept_with_a_warning() -> None:
-    result, _, _, said = packed(with_meshes(Mesh("meshes/gone.stl")), {}, "urdf")
+    result, _, _, reported = packed(with_meshes(Mesh("meshes/gone.stl")), {}, "urdf")
     assert uris(result) == ["meshes/gone.stl"]
-    assert said == ["warning HX201 mesh 'gone/0': 'meshes/gone.stl' was not found; the reference is kept"]
+    assert reported == ["warning HX201 mesh 'gone/0': 'meshes/gone.stl' was not found; the reference is kept"]
 
 
 def test_two_files_that_want_the_same_place_do_not_overwrite_each_other() -> None:
@@ -362,9 +362,9 @@ def _tetrahedron(name: bytes, x: int, first: int) -> bytes:
 def test_an_obj_of_several_objects_becomes_one_because_mujoco_keeps_only_the_first() -> None:
     two = _tetrahedron(b"left", 0, 1) + _tetrahedron(b"right", 5, 5)
     robot = with_meshes(Mesh("two.obj"))
-    _, _, copies, said = packed(robot, {"two.obj": two})
+    _, _, copies, reported = packed(robot, {"two.obj": two})
     assert copies == {}
-    assert [line for line in said if "has 2 objects, and MuJoCo keeps the first of them" in line]
+    assert [line for line in reported if "has 2 objects, and MuJoCo keeps the first of them" in line]
     assert len(compiles(robot, {"two.obj": two}).mesh_vert) == 8
     one = _tetrahedron(b"left", 0, 1)
     assert packed(with_meshes(Mesh("one.obj")), {"one.obj": one})[2] == {"meshes/one.obj": "one.obj"}

@@ -52,12 +52,12 @@ def test_quiet_shows_errors_alone_and_verbose_shows_each_place(folder: Path, cap
         "</robot>", "".join(f'<joint name="j{i}" type="revolute"><parent link="base"/><child link="l{i}"/></joint>' for i in (1, 2))
     )
     (folder / "arm.urdf").write_text(twice + '<link name="l1"/><link name="l2"/></robot>')
-    said = {}
+    printed = {}
     for option in ("-q", "-v", "--color=auto"):
         assert main(["info", "arm.urdf", "--lenient", option]) == exits.DONE
-        said[option] = capsys.readouterr().err.splitlines()
-    assert {line.split(": ")[1].partition("[")[0] for line in said["-q"] if ": " in line and line.startswith("arm")} <= {"error"}
-    assert len(said["-q"]) < len(said["--color=auto"]) < len(said["-v"])
+        printed[option] = capsys.readouterr().err.splitlines()
+    assert {line.split(": ")[1].partition("[")[0] for line in printed["-q"] if ": " in line and line.startswith("arm")} <= {"error"}
+    assert len(printed["-q"]) < len(printed["--color=auto"]) < len(printed["-v"])
 
 
 def test_colours_can_be_forced_and_forbidden(folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -266,12 +266,14 @@ def test_the_words_of_an_edge_say_the_roles_of_its_ends() -> None:
 
 
 def test_parameters_are_compared_by_name_wherever_they_stand() -> None:
-    def said(*parameters: tuple[str, float | str | tuple[float, ...]]) -> Mechanism:
+    def with_parameters(*parameters: tuple[str, float | str | tuple[float, ...]]) -> Mechanism:
         return with_part(parts.Actuator("general", parameters))
 
-    one = said(("ctrlrange", (-1.0, 1.0)), ("kp", 4.0), ("dyntype", "filter"), ("user", 1.0), ("user", 2.0))
-    assert diff(one, said(("dyntype", "filter"), ("user", 1.0), ("kp", (4.0,)), ("user", 2.0), ("ctrlrange", (-1.0, 1.0)))) == ()
-    other = said(("kp", 5.0), ("gear", (1.0, 0.0)), ("ctrlrange", (-1.0, 2.0)), ("dyntype", "filter"), ("user", 1.0), ("user", 3.0))
+    one = with_parameters(("ctrlrange", (-1.0, 1.0)), ("kp", 4.0), ("dyntype", "filter"), ("user", 1.0), ("user", 2.0))
+    assert diff(one, with_parameters(("dyntype", "filter"), ("user", 1.0), ("kp", (4.0,)), ("user", 2.0), ("ctrlrange", (-1.0, 1.0)))) == ()
+    other = with_parameters(
+        ("kp", 5.0), ("gear", (1.0, 0.0)), ("ctrlrange", (-1.0, 2.0)), ("dyntype", "filter"), ("user", 1.0), ("user", 3.0)
+    )
     assert [(found.field, found.before, found.after) for found in diff(one, other)] == [
         ("parameters.ctrlrange", "[-1 1]", "[-1 2]"),
         ("parameters.kp", "4", "5"),

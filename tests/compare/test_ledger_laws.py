@@ -165,20 +165,20 @@ _LIMITED = parts.Limits(-1.0, 1.0, velocity=2.0)
 _SAFETY = _on_a_dof(safety=parts.Safety(1.0, 2.0, -1.0, 1.0))
 _CALIBRATION = _on_a_dof(calibration=parts.Calibration(1.0))
 _IN_URDF = [_on_a_dof(**{name: 0.5}) for name in ("armature", "stiffness", "spring_ref")]
-UNSAID = {
+NOT_REPORTED = {
     "urdf": [*_IN_URDF, _on_a_shape(friction=(0.5,)), _on_a_shape(mass=0.5), _extra],
     "mjcf": [_on_a_dof(limits=_LIMITED), _on_a_free_joint(Y), _SAFETY, _CALIBRATION, _extra],
     "usd": [_SAFETY, _CALIBRATION, _on_a_free_joint(Y), _on_a_shape(density=0.5), _extra],
 }
 """Of each format, changes of a single field for which it has no word."""
-UNSAID |= {"usdc": UNSAID["usd"], "hymeko": []}
+NOT_REPORTED |= {"usdc": NOT_REPORTED["usd"], "hymeko": []}
 
 
-@pytest.mark.parametrize("way", [way for way in FORMATS if UNSAID[way]])
+@pytest.mark.parametrize("way", [way for way in FORMATS if NOT_REPORTED[way]])
 @FEW
 @given(data=st.data())
 def test_what_a_format_cannot_say_is_in_the_ledger_at_its_element(way: str, data: st.DataObject) -> None:
-    changed = data.draw(st.sampled_from(UNSAID[way]))(data.draw(plain_robots(way)))
+    changed = data.draw(st.sampled_from(NOT_REPORTED[way]))(data.draw(plain_robots(way)))
     assume(changed is not None)
     robot, element = changed
     assert {loss.element for loss in _converted(robot, way).losses or ()} == {str(element)}

@@ -25,8 +25,8 @@ def misbehave(case: Case, plan: Plan, folder: str, scratch: str, steps: Sequence
     for step in steps:
         if step == where:
             DEEDS[deed](folder)
-        said = said_at(case, step)
-        line = {"step": step, "found": said, "cost": asdict(Cost(case.key, step, 0.0, 0.0, 0.0))}
+        found = found_at(case, step)
+        line = {"step": step, "found": found, "cost": asdict(Cost(case.key, step, 0.0, 0.0, 0.0))}
         with (Path(scratch) / NOTES).open("a") as notes:
             notes.write(json.dumps(line) + "\n")
 
@@ -36,7 +36,7 @@ def note_modules(case: Case, plan: Plan, folder: str, scratch: str, steps: Seque
     (Path(scratch) / "modules").write_text(" ".join(sys.modules))
 
 
-def said_at(case: Case, step: str) -> dict[str, object]:
+def found_at(case: Case, step: str) -> dict[str, object]:
     if step == "read":
         return asdict(RobotRow(case.key, case.package, case.format))
     if step == "engine":

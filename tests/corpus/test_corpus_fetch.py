@@ -162,7 +162,7 @@ def test_a_package_that_the_index_does_not_have_is_refused_in_pips_words(index: 
     )
 
 
-def test_being_offline_is_said_in_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_being_offline_is_reported_in_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PIP_CONFIG_FILE", "/dev/null")
     monkeypatch.setenv("PIP_INDEX_URL", "http://127.0.0.1:9/simple")
     monkeypatch.setenv("PIP_RETRIES", "1")
@@ -172,7 +172,7 @@ def test_being_offline_is_said_in_one_line(tmp_path: Path, monkeypatch: pytest.M
     assert refusal.value.diagnostic.message == "newton==1.8.0 cannot be downloaded: the package index cannot be reached"
 
 
-def test_a_cache_that_cannot_be_written_is_said_in_one_line(index: Path, tmp_path: Path) -> None:
+def test_a_cache_that_cannot_be_written_is_reported_in_one_line(index: Path, tmp_path: Path) -> None:
     package = make_wheel(index, ROBOT)
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(Refusal) as refusal:
@@ -189,10 +189,10 @@ def test_two_processes_that_fetch_the_same_package_do_not_disturb_each_other(ind
     )
     command = [sys.executable, "-c", program, str(tmp_path / "cache")]
     runs = [subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(2)]
-    said = [run.communicate(timeout=60) for run in runs]
-    assert [run.returncode for run in runs] == [0, 0], said
+    printed = [run.communicate(timeout=60) for run in runs]
+    assert [run.returncode for run in runs] == [0, 0], printed
     folder = cache.package_path(package, tmp_path / "cache")
-    assert [out.strip() for out, _ in said] == [str(folder)] * 2
+    assert [out.strip() for out, _ in printed] == [str(folder)] * 2
     assert len(list((folder / "toy_robots").iterdir())) == 500
 
 

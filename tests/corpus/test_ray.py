@@ -30,15 +30,15 @@ def test_a_node_that_dies_changes_nothing(tmp_path: Path) -> None:
                 time.sleep(0.05)
             assert run.poll() is None, "the run was over before a node could die"
             end(ray.nodes[1])
-            said = run.communicate(timeout=300)[1]
-        assert run.returncode == 0, said
+            printed = run.communicate(timeout=300)[1]
+        assert run.returncode == 0, printed
     local = tmp_path / "local"
     subprocess.run([*words, "--jobs", "1", "-o", str(local)], cwd=ROOT, check=True, capture_output=True)
     for name in ("robots.parquet", "legs.parquet"):
         assert (results / name).read_bytes() == (local / name).read_bytes()
 
 
-def test_a_cluster_that_is_not_there_is_said_in_one_line(tmp_path: Path) -> None:
+def test_a_cluster_that_is_not_there_is_reported_in_one_line(tmp_path: Path) -> None:
     robots = fill(tmp_path / "toys", robots=1)
     where = ["--engine", "ray", "--address", "127.0.0.1:1", "-o", str(tmp_path / "o")]
     words = ["corpus", "run", "--from", str(robots), "--pairs", "urdf:hymeko", *where]

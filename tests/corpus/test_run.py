@@ -157,7 +157,7 @@ def test_every_part_is_a_document_of_its_own(undisturbed: Path) -> None:
     assert pl.read_parquet(undisturbed / "costs.parquet").filter(pl.col("megabytes") <= 0).is_empty()
 
 
-def test_wrong_words_are_said_in_one_line(tmp_path: Path) -> None:
+def test_wrong_words_are_reported_in_one_line(tmp_path: Path) -> None:
     assert "expected pairs such as urdf:mjcf, found 'urdf'" in corpus("run", "--pairs", "urdf", code=2).stderr
     assert "there is no folder" in corpus("run", "--from", str(tmp_path / "nowhere"), code=1).stderr
     assert "there is no robot to read" in corpus("run", "--from", str(tmp_path), code=2).stderr

@@ -368,7 +368,7 @@ def test_an_edit_that_the_original_s_format_cannot_represent_is_reported(tmp_pat
     hx.convert(original, there)
     there.write_text(there.read_text().replace('joint name="shoulder"', 'joint name="shoulder" armature="0.3"'))
     found = hx.update(original, there)
-    assert [str(said) for said in found.report] == [
+    assert [str(diagnostic) for diagnostic in found.report] == [
         f"{original}:15: warning[HX118]: the edit has no place in urdf: joint 'shoulder' dofs[0].armature: 0 -> 0.3"
     ]
     assert (found.edits, original.read_text()) == ((), ARM)

@@ -88,9 +88,9 @@ def size(factored: Factored) -> int:
     stack: list[Item] = [*factored.items, *(item for macro in factored.macros for item in macro.body)]
     while stack:
         item = stack.pop()
-        said = item.arguments if isinstance(item, Call) else item.leaves
+        parts = item.arguments if isinstance(item, Call) else item.leaves
         total += 9 + len(item.macro) if isinstance(item, Call) else 3 + len(item.tag)
-        total += sum(len(name) + 3 + sum(map(letters, (text,) if isinstance(text, str) else text)) for name, text in said)
+        total += sum(len(name) + 3 + sum(map(letters, (text,) if isinstance(text, str) else text)) for name, text in parts)
         if isinstance(item, FormElement) and item.children:
             total += 2 + len(item.tag)
             stack += item.children

@@ -25,8 +25,8 @@ def letters(rows: list[list[tuple[str, str]]], found: list[Shared]) -> int:
 
 @given(ROWS)
 @settings(max_examples=200)
-def test_sets_are_true_of_their_rows_and_save_letters(said: list[dict[str, str]]) -> None:
-    rows = [list(row.items()) for row in said]
+def test_sets_are_true_of_their_rows_and_save_letters(table: list[dict[str, str]]) -> None:
+    rows = [list(row.items()) for row in table]
     found = share(rows, COSTS)
     assert found == share(rows, COSTS)
     for number, shared in enumerate(found):

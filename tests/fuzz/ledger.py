@@ -64,5 +64,7 @@ def sums() -> Iterator[str]:
 
 def _commit() -> str:
     """The commit that is checked out, as far as git knows."""
-    said = subprocess.run(("git", "describe", "--always", "--dirty"), cwd=FOUND.parents[1], capture_output=True, text=True, check=False)
-    return said.stdout.strip() or "unknown"
+    described = subprocess.run(
+        ("git", "describe", "--always", "--dirty"), cwd=FOUND.parents[1], capture_output=True, text=True, check=False
+    )
+    return described.stdout.strip() or "unknown"

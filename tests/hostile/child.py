@@ -17,10 +17,10 @@ MEMORY = 3 * 2**30
 
 
 class Ending(NamedTuple):
-    """How a command ended: its exit code (None: it died or had to be killed), what it said, and how long it took in s."""
+    """How a command ended: its exit code (None: it died or had to be killed), what it printed, and how long it took in s."""
 
     code: int | None
-    said: str
+    printed: str
     seconds: float
 
 
@@ -41,11 +41,11 @@ class Child:
             self.stop()
             return Ending(None, f"killed after {SECONDS} s", time.monotonic() - begin)
         try:
-            code, said = self._pipe.recv()
+            code, printed = self._pipe.recv()
         except EOFError:
             self._process.join()
             return Ending(None, f"died with {self._process.exitcode}", time.monotonic() - begin)
-        return Ending(code, said, time.monotonic() - begin)
+        return Ending(code, printed, time.monotonic() - begin)
 
     def stop(self) -> None:
         """End the process."""
@@ -78,10 +78,10 @@ def _serve(pipe: Any) -> None:
         except EOFError:
             return
         os.chdir(folder)
-        said = io.StringIO()
-        with redirect_stderr(said):
+        printed = io.StringIO()
+        with redirect_stderr(printed):
             try:
                 code: int | str | None = main(words)
             except SystemExit as end:
                 code = end.code
-        pipe.send((code, said.getvalue()))
+        pipe.send((code, printed.getvalue()))

@@ -40,11 +40,11 @@ def test_what_strangers_send_ends_as_expected(case: Case, child: Child, tmp_path
     folder = _laid_out(case, tmp_path)
     before = _tree(tmp_path)
     ending = child.run(list(case.words), str(folder))
-    said = ending.said.replace(str(tmp_path), "")
-    assert ending.code == case.code, said[-2000:]
-    assert "Traceback" not in said
-    assert set(re.findall(r"(?:error|warning)\[(HX\d+)\]", said)) >= set(case.codes), said[-2000:]
-    assert set(re.findall(r"error\[(HX\d+)\]", said)) <= set(case.codes), said[-2000:]
+    printed = ending.printed.replace(str(tmp_path), "")
+    assert ending.code == case.code, printed[-2000:]
+    assert "Traceback" not in printed
+    assert set(re.findall(r"(?:error|warning)\[(HX\d+)\]", printed)) >= set(case.codes), printed[-2000:]
+    assert set(re.findall(r"error\[(HX\d+)\]", printed)) <= set(case.codes), printed[-2000:]
     assert ending.seconds < case.seconds
     assert sorted(_tree(tmp_path) - before) == sorted(f"out/{name}" for name in case.leaves)
 

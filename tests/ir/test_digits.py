@@ -38,7 +38,7 @@ def test_small_numbers_have_an_exponent_from_the_same_size_on() -> None:
 
 
 @given(st.lists(st.floats() | st.integers(-(10**20), 10**20) | st.sampled_from([-0.0, 1e-5, 9.999e-5, 1e-4, 1e15, 1e16, 5e-324, True])))
-def test_several_numbers_are_said_as_each_of_them_is(values: list[float]) -> None:
+def test_several_numbers_are_written_as_each_of_them_is(values: list[float]) -> None:
     assert numbers_text(tuple(values)) == " ".join(map(number_text, values))
     assert numbers_text(tuple(map(np.float64, values))) == " ".join(map(number_text, values))
     named = {f"n{place}": value for place, value in enumerate(values)}

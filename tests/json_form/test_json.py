@@ -55,8 +55,8 @@ def check_exact(mechanism: Mechanism) -> bytes:
     assert identical(tuple(back.graph.vertices.items()), tuple(mechanism.graph.vertices.items()))
     assert identical(tuple(back.graph.edges.items()), tuple(mechanism.graph.edges.items()))
     assert identical(tuple(back.extras.items()), tuple(in_order(mechanism, mechanism.extras)))
-    assert {key: [*said.items()] for key, said in back.notations.items()} == {
-        key: [*said.items()] for key, said in mechanism.notations.items() if said
+    assert {key: [*notation.items()] for key, notation in back.notations.items()} == {
+        key: [*notation.items()] for key, notation in mechanism.notations.items() if notation
     }
     assert back.stereotypes == {key: tuple(found) for key, found in mechanism.stereotypes.items() if found}
     assert back.layout == mechanism.layout

@@ -28,7 +28,7 @@ RIGHT_ANGLE = math.radians(90.0)
 
 
 def load(path: Path) -> Mechanism:
-    """A file that nothing has to be said about."""
+    """A file about which nothing has to be reported."""
     report = Report()
     mechanism = hx.load(path, report=report).mechanism
     assert [str(diagnostic) for diagnostic in report] == []

@@ -1,4 +1,4 @@
-"""What a file carries may be damaged or made up: then the file is read without it, and that is said once."""
+"""What a file carries may be damaged or made up: then the file is read without it, and that is reported once."""
 
 from __future__ import annotations
 

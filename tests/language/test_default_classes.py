@@ -1,4 +1,4 @@
-"""A default class of MJCF is a stereotype of the text: it is said once, gives its fields to elements, and is a class again in MJCF."""
+"""A default class of MJCF is a stereotype of the text: it is written once, gives its fields to elements, and is a class again in MJCF."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def _joint(robot: hx.Mechanism, name: str) -> parts.Dof:
     return robot.joints[Id("joint", name)].joint.dofs[0]
 
 
-def test_a_default_class_is_said_once() -> None:
+def test_a_default_class_is_written_once() -> None:
     text = _hymeko()
     assert CLASSES in text
     assert "mjcf {\n    default" not in text

@@ -59,8 +59,8 @@ def test_every_word_of_the_vocabulary_is_in_the_reference() -> None:
     words |= {*AXES, *ROLE_MOVES, *CONSTANTS, *FUNCTIONS} | {move for move in MOVES if move not in ("none", "free")}
     words |= {unit for units in BASE_UNITS.values() for unit in units} | set(BASE_UNITS)
     code = re.findall(r"```hymeko\n.*?```|(?<!`)`[^`\n]+`", LANGUAGE, re.DOTALL)
-    said = set(re.findall(r"[\w°µ%]+", " ".join(code)))
-    assert words - said == set()
+    used = set(re.findall(r"[\w°µ%]+", " ".join(code)))
+    assert words - used == set()
 
 
 def test_the_reference_names_the_bounds_that_hold() -> None:

@@ -104,15 +104,15 @@ def test_a_long_line_is_cut_around_the_place() -> None:
     assert line[caret.index("^")] == ";"
 
 
-def test_the_words_that_are_left_over_are_kept_and_said() -> None:
+def test_the_words_that_are_left_over_are_kept_and_reported() -> None:
     report = Report()
     robot = read(Source("a.hymeko", b"arm : robot {\n  base { colour [1 0 0] }\n}"), report).mechanism
     assert [str(diagnostic) for diagnostic in report] == ["a.hymeko:2:10: warning[HX061]: body 'base' has no 'colour'; it is kept as it is"]
     assert [extra.text for extra in robot.extras[next(iter(robot.graph.vertices))]] == ["colour [1 0 0]"]
 
 
-def test_the_position_of_what_turns_an_axis_means_nothing_and_that_is_said() -> None:
+def test_the_position_of_what_turns_an_axis_means_nothing_and_that_is_reported() -> None:
     report = Report()
     read(Source("a.hymeko", b"r : robot { a {} b {} @j : prismatic { + a - b, [[0 0 0.2] [0 45 0]] axis -> X } }"), report)
-    said = "only the rotation of the weight turns the axis; the position 0 0 0.2 means nothing"
-    assert [str(diagnostic) for diagnostic in report] == [f"a.hymeko:1:49: warning[HX062]: {said}"]
+    message = "only the rotation of the weight turns the axis; the position 0 0 0.2 means nothing"
+    assert [str(diagnostic) for diagnostic in report] == [f"a.hymeko:1:49: warning[HX062]: {message}"]

@@ -152,9 +152,9 @@ def test_files_are_formatted_in_place_and_only_where_they_change(tmp_path: Path,
     bad.write_text("a{}\r\n", newline="")
     before = good.stat().st_mtime_ns
     assert main(["fmt", "--check", str(tmp_path)]) == 1
-    said = capsys.readouterr()
-    assert said.out == f"would reformat {bad}\n"
-    assert said.err == "1 file would be reformatted, 1 file left unchanged\n"
+    printed = capsys.readouterr()
+    assert printed.out == f"would reformat {bad}\n"
+    assert printed.err == "1 file would be reformatted, 1 file left unchanged\n"
     assert main(["fmt", str(good), str(bad)]) == 0
     assert capsys.readouterr().err == "1 file reformatted, 1 file left unchanged\n"
     assert bad.read_bytes() == b"a {}\n"

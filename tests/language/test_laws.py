@@ -27,7 +27,9 @@ def test_what_is_written_reads_back_equal(mechanism: Mechanism) -> None:
 @given(mechanisms())
 def test_notations_survive(mechanism: Mechanism) -> None:
     back = read_text(text_of(mechanism))
-    assert {key: dict(said) for key, said in back.notations.items()} == {key: dict(said) for key, said in mechanism.notations.items()}
+    assert {key: dict(notation) for key, notation in back.notations.items()} == {
+        key: dict(notation) for key, notation in mechanism.notations.items()
+    }
     written = [(key, *_written(part)) for key, part in _parts(mechanism)]
     assert written == [(key, *_written(part)) for key, part in _parts(back)]
 

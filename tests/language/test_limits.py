@@ -59,12 +59,12 @@ def test_expressions_are_arithmetic(text: str, value: float | str) -> None:
     assert evaluate(text, {"x": 3.0, "s": "text"}) == value
 
 
-def test_what_python_only_reads_with_a_warning_is_no_arithmetic_and_nothing_else_is_said() -> None:
-    with warnings.catch_warnings(record=True) as said:
+def test_what_python_only_reads_with_a_warning_is_no_arithmetic_and_nothing_else_is_reported() -> None:
+    with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         with pytest.raises(ExpressionError, match="^it is not arithmetic$"):
             evaluate("1or 2", {})
-    assert said == []
+    assert warned == []
 
 
 HOSTILE = [
@@ -108,7 +108,7 @@ HOSTILE = [
 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=lambda text: text[:20])
-def test_nothing_else_can_be_said_in_an_expression(text: str) -> None:
+def test_nothing_else_is_an_expression(text: str) -> None:
     def work() -> None:
         try:
             value = evaluate(text, {"x": 3.0, "s": "text"})
@@ -143,8 +143,8 @@ TYPES = "t0() : link {{ mass 1 }}\n" + _doubling("t{this}() : t{before}, t{befor
 def test_templates_that_double_forty_times_are_stopped(body: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(expansion, "MAX_ITEMS", 2000)
     monkeypatch.setattr(expansion, "EACH", 0)
-    said = refusal_of("arm : robot {\n" + body.replace("{{", "{").replace("}}", "}") + "\n}")
-    assert "error[HX007]: the templates make more than 2000 items" in said
+    refusal = refusal_of("arm : robot {\n" + body.replace("{{", "{").replace("}}", "}") + "\n}")
+    assert "error[HX007]: the templates make more than 2000 items" in refusal
 
 
 def test_templates_stop_at_the_bound_and_not_before(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -153,8 +153,8 @@ def test_templates_stop_at_the_bound_and_not_before(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(expansion, "MAX_ITEMS", 41)
     monkeypatch.setattr(expansion, "EACH", 0)
     assert len(read_text(text.format(" ".join(f"p{number} : part {{}}" for number in range(10)))).graph.vertices) == 10
-    said = refusal_of(text.format(" ".join(f"p{number} : part {{}}" for number in range(11))))
-    assert "error[HX007]: the templates make more than 41 items" in said
+    refusal = refusal_of(text.format(" ".join(f"p{number} : part {{}}" for number in range(11))))
+    assert "error[HX007]: the templates make more than 41 items" in refusal
 
 
 def test_elements_that_the_text_has_itself_may_have_types_however_many_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -202,9 +202,9 @@ DEEP = 100_000
     ids=["blocks", "lists", "closed lists", "parentheses", "closed blocks", "arcs", "arguments"],
 )
 def test_brackets_a_hundred_thousand_deep_are_a_diagnostic(text: str, place: str | None) -> None:
-    said = refusal_of(text)
-    assert "error[HX007]: brackets are nested more than 200 levels deep" in said or "error[HX060]" in said
-    assert place is None or said.startswith(f"a.hymeko:{place}: ")
+    refusal = refusal_of(text)
+    assert "error[HX007]: brackets are nested more than 200 levels deep" in refusal or "error[HX060]" in refusal
+    assert place is None or refusal.startswith(f"a.hymeko:{place}: ")
 
 
 def test_everything_up_to_the_depth_is_handled_without_a_crash() -> None:

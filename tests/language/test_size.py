@@ -1,4 +1,4 @@
-"""HyMeKo text is short: repeated fields are said once, and nothing is said that is a default."""
+"""HyMeKo text is short: repeated fields are written once, and no default is written."""
 
 from __future__ import annotations
 

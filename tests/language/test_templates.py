@@ -186,7 +186,7 @@ def test_whatever_repeats_reads_back_equal(mechanism: Mechanism) -> None:
 
 
 def test_parameters_called_like_formats_keep_their_place() -> None:
-    said = (("urdf", 0.0), ("base", 0.0), ("limit", -1.7976931348623157e308))
-    edges: dict[Id, RobotEdge] = {Id("relation", name): Edge(parts.Relation(said), (Arc(Id("body", "a")),)) for name in "wxyz"}
+    literals = (("urdf", 0.0), ("base", 0.0), ("limit", -1.7976931348623157e308))
+    edges: dict[Id, RobotEdge] = {Id("relation", name): Edge(parts.Relation(literals), (Arc(Id("body", "a")),)) for name in "wxyz"}
     mechanism = Mechanism("r", Hypergraph({Id("body", "a"): parts.Body()}, edges))
     assert read_text(text_of(mechanism)) == mechanism

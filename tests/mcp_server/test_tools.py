@@ -74,17 +74,17 @@ def test_every_tool_is_listed_with_a_description(folder: Path) -> None:
 
 
 def test_convert(folder: Path) -> None:
-    said = answer(folder, "convert", source="arm.urdf", output="arm.xml", keep=True)
-    assert said.startswith("exit 0: done\nwrote arm.xml (2 bodies, 1 joint)")
+    answered = answer(folder, "convert", source="arm.urdf", output="arm.xml", keep=True)
+    assert answered.startswith("exit 0: done\nwrote arm.xml (2 bodies, 1 joint)")
     assert (folder / "arm.xml").read_text().startswith("<!-- made by hymeko-x")
     assert "HX003" in answer(folder, "convert", fails=True, source="arm.urdf", output="arm.step")
 
 
 def test_check(folder: Path) -> None:
-    said = answer(folder, "check", path="arm.urdf", profile="complete", links=2, joints=2)
-    assert said.startswith("exit 3: the check failed\n")
-    assert "HX316" in said or "HX317" in said
-    assert "joints" in said
+    answered = answer(folder, "check", path="arm.urdf", profile="complete", links=2, joints=2)
+    assert answered.startswith("exit 3: the check failed\n")
+    assert "HX316" in answered or "HX317" in answered
+    assert "joints" in answered
 
 
 def test_verify(folder: Path) -> None:
@@ -96,13 +96,13 @@ def test_verify(folder: Path) -> None:
 
 def test_diff(folder: Path) -> None:
     (folder / "other.urdf").write_text(ROBOT.replace('upper="1"', 'upper="2"'))
-    said = answer(folder, "diff", a="arm.urdf", b="other.urdf")
-    assert said == "exit 4: a difference was found\njoint 'j' dofs[0].limits.upper: 1 -> 2"
+    answered = answer(folder, "diff", a="arm.urdf", b="other.urdf")
+    assert answered == "exit 4: a difference was found\njoint 'j' dofs[0].limits.upper: 1 -> 2"
 
 
 def test_info(folder: Path) -> None:
-    said = answer(folder, "info", path="arm.urdf")
-    assert json.loads(said.partition("\n")[2])["bodies"] == 2
+    answered = answer(folder, "info", path="arm.urdf")
+    assert json.loads(answered.partition("\n")[2])["bodies"] == 2
 
 
 def test_dh(folder: Path) -> None:
@@ -180,9 +180,9 @@ def test_an_include_outside_is_not_read(folder: Path) -> None:
     (folder.parent / "secret.xml").write_text("<mujoco><worldbody><body name='secret'/></worldbody></mujoco>")
     (folder / "arm.xml").write_text("<mujoco><include file='../secret.xml'/><worldbody><body name='b'/></worldbody></mujoco>")
     for tool, paths in (("info", {"path": "arm.xml"}), ("verify", {"a": "arm.xml", "b": "arm.xml"})):
-        said = answer(folder, tool, fails=True, **paths)
-        assert "'secret'" not in said
-        assert "HX053" in said or "HX001" in said, said
+        answered = answer(folder, tool, fails=True, **paths)
+        assert "'secret'" not in answered
+        assert "HX053" in answered or "HX001" in answered, answered
 
 
 def test_a_module_in_the_folder_is_not_imported(folder: Path) -> None:
@@ -193,9 +193,9 @@ def test_a_module_in_the_folder_is_not_imported(folder: Path) -> None:
 
 def test_what_comes_back_is_bounded(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run, "MOST_CHARACTERS", 100)
-    said = answer(folder, "info", path="arm.urdf")
-    assert len(said) < 250
-    assert "... cut off: " in said
+    answered = answer(folder, "info", path="arm.urdf")
+    assert len(answered) < 250
+    assert "... cut off: " in answered
 
 
 def test_a_verb_that_takes_too_long_is_ended(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

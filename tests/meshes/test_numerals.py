@@ -21,16 +21,16 @@ def words(form: str, count: int = 3000) -> list[str]:
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("blank", BLANKS)
 def test_many_decimals_are_rounded_as_python_rounds_each(form: str, blank: str) -> None:
-    said = words(form)
-    text = blank + blank.join(said) + blank
-    assert np.array_equal(numbers_in(text), np.array([float(word) for word in said]))
-    assert np.array_equal(numbers_in(text.encode(), np.float32), np.array([float(word) for word in said]).astype(np.float32))
+    numerals = words(form)
+    text = blank + blank.join(numerals) + blank
+    assert np.array_equal(numbers_in(text), np.array([float(word) for word in numerals]))
+    assert np.array_equal(numbers_in(text.encode(), np.float32), np.array([float(word) for word in numerals]).astype(np.float32))
 
 
 @pytest.mark.parametrize("odd", ODD)
 def test_numbers_of_every_form_are_read(odd: str) -> None:
-    said = [*words("{:.6f}"), odd]
-    assert np.array_equal(numbers_in(" ".join(said)), np.array([float(word) for word in said]), equal_nan=True)
+    numerals = [*words("{:.6f}"), odd]
+    assert np.array_equal(numbers_in(" ".join(numerals)), np.array([float(word) for word in numerals]), equal_nan=True)
 
 
 @pytest.mark.parametrize("wrong", ["x", "1,2", "[1]", "1-2", "1.2.3", "--1", "true", "1_000", "0x1f", '"1"', "[", "1e"])

@@ -29,13 +29,13 @@ MOVES = (
 CUBE = b"v 0 0 0\nv 1 0 0 \nv 1 1 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nvt 0 0\n"
 
 
-def moved(said: str) -> bytes:
-    return dae().replace(f"<matrix>{IN_PLACE}</matrix>".encode(), said.encode())
+def moved(text: str) -> bytes:
+    return dae().replace(f"<matrix>{IN_PLACE}</matrix>".encode(), text.encode())
 
 
-@pytest.mark.parametrize("said", MOVES)
-def test_nodes_move_a_plain_collada_file_as_the_general_loader_does(said: str) -> None:
-    data = moved(said)
+@pytest.mark.parametrize("text", MOVES)
+def test_nodes_move_a_plain_collada_file_as_the_general_loader_does(text: str) -> None:
+    data = moved(text)
     assert collada_groups(data) is not None
     whole, parts = read_whole(data, ".dae", nothing_else), merged(read_parts(data, ".dae", nothing_else))
     assert triangles(whole) == triangles(parts)
@@ -146,7 +146,7 @@ def test_materials_of_an_obj_file_are_runs_of_its_lines_each_in_its_own_form(end
 
 
 @pytest.mark.parametrize(
-    ("said", "alpha"),
+    ("text", "alpha"),
     [
         ("", 1.0),
         ("d 0.25", 0.25),
@@ -163,8 +163,8 @@ def test_materials_of_an_obj_file_are_runs_of_its_lines_each_in_its_own_form(end
         ("d 1.5\nTr -2", 1.0),
     ],
 )
-def test_what_hides_a_part_of_what_is_behind_it_says_so_in_either_word(said: str, alpha: float) -> None:
-    library = f"newmtl glass\nKd 0.5 0.5 0.5\n{said}\nnewmtl paint\nKd 1 0 0\n".encode()
+def test_what_hides_a_part_of_what_is_behind_it_says_so_in_either_word(text: str, alpha: float) -> None:
+    library = f"newmtl glass\nKd 0.5 0.5 0.5\n{text}\nnewmtl paint\nKd 1 0 0\n".encode()
     glass, paint = MaterialEntry((0.5, 0.5, 0.5, alpha)), MaterialEntry((1.0, 0.0, 0.0, 1.0))
     assert material_entries(library) == {"glass": glass, "paint": paint}
     assert material_entries(library.replace(b"Kd 0.5 0.5 0.5\n", b"")) == {"paint": paint}

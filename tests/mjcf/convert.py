@@ -33,7 +33,7 @@ class Converted(Struct, frozen=True):
     assets: dict[str, bytes]
     report: Report
 
-    def said(self, *codes: str) -> list[str]:
+    def reported(self, *codes: str) -> list[str]:
         """The diagnostics with these codes, after reading."""
         return [f"{d.severity.value} {d.code.id} {d.message}" for d in self.report if d.code.id in codes]
 

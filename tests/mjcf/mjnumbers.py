@@ -100,8 +100,8 @@ class Place(Struct, frozen=True):
             tags = ["default", *tags[1:]]
         inner = _WITHIN.get(self.path, "")
         for depth in range(len(tags), 0, -1):
-            said = self._said(value) if depth == len(tags) else _needed("/".join(tags[:depth])) if tags[0] != "worldbody" else {}
-            attributes = "".join(f" {name}={quoteattr(text)}" for name, text in said.items())
+            written = self._written(value) if depth == len(tags) else _needed("/".join(tags[:depth])) if tags[0] != "worldbody" else {}
+            attributes = "".join(f" {name}={quoteattr(text)}" for name, text in written.items())
             beside = '<geom size=".1"/>' if tags[depth - 1] == "body" and tags[-1] not in ("body", "geom") else ""
             inner = f"<{tags[depth - 1]}{attributes}>{inner}{beside}</{tags[depth - 1]}>"
         first = tags[0]
@@ -112,11 +112,11 @@ class Place(Struct, frozen=True):
             body = ""
         return f"<mujoco>{body}{''.join(f'<{tag}>{text}</{tag}>' for tag, text in sections.items() if text)}</mujoco>"
 
-    def _said(self, value: str) -> dict[str, str]:
-        said = _needed(self.path)
-        said.pop(_INSTEAD.get((self.path, self.name), ""), None)
+    def _written(self, value: str) -> dict[str, str]:
+        written = _needed(self.path)
+        written.pop(_INSTEAD.get((self.path, self.name), ""), None)
         more = _ALONG.get(self.name, {}) if self.path.startswith(("actuator/", "body/")) else {}
-        found = {**said, **{name: text for name, text in more.items() if name in attributes_of(self.path)}, self.name: value}
+        found = {**written, **{name: text for name, text in more.items() if name in attributes_of(self.path)}, self.name: value}
         return {name: text for name, text in found.items() if text is not None}
 
 

@@ -44,18 +44,18 @@ def test_a_mesh_weighs_what_mujoco_says() -> None:
     assert found.mass == pytest.approx(8.0, rel=1e-6)
 
 
-def test_an_inertia_that_is_said_stays_as_it_is() -> None:
+def test_an_inertia_that_is_given_stays_as_it_is() -> None:
     body = '<body name="b"><inertial pos="0 0 1" mass="2" diaginertia="1 2 2"/><geom size=".1"/></body>'
     assert inertial(weighed(body), "b") == Inertial(2.0, (0.0, 0.0, 1.0), (1.0, 2.0, 2.0, 0.0, 0.0, 0.0))
 
 
-def test_where_everything_is_said_nothing_is_printed_for_mujoco() -> None:
+def test_where_everything_is_given_nothing_is_printed_for_mujoco() -> None:
     body = '<body name="b"><freejoint/><inertial pos="0 0 1" mass="2" diaginertia="1 2 2"/><geom size=".1"/></body>'
     robot = read_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>")
     assert complete(robot, lambda: pytest.fail("it was printed"), NoFiles(), Report()) is robot
 
 
-def test_a_total_mass_scales_what_is_said_as_well() -> None:
+def test_a_total_mass_scales_what_is_given_as_well() -> None:
     body = '<body name="b"><inertial pos="0 0 1" mass="2" diaginertia="1 2 2"/></body>'
     assert inertial(weighed(body, '<compiler settotalmass="4"/>'), "b").mass == pytest.approx(4.0)
 
@@ -70,7 +70,7 @@ def test_without_a_mesh_there_is_a_warning_and_no_inertia() -> None:
     text = f'<mujoco>{asset}<worldbody><body name="b"><geom type="mesh" mesh="m"/></body></worldbody></mujoco>'
     robot, report = read_text(text), Report()
     assert complete(robot, lambda: (robot, write(robot).encode()), NoFiles(), report) == robot
-    assert [str(said)[:15] for said in report] == ["warning[HX302]:"]
+    assert [str(diagnostic)[:15] for diagnostic in report] == ["warning[HX302]:"]
 
 
 def test_textures_and_skins_that_are_not_there_weigh_nothing() -> None:
@@ -104,7 +104,7 @@ def test_a_geometry_that_only_mujoco_knows_is_left_out_elsewhere_with_a_warning(
     report = Report()
     legal = legalize(read_text(text), "urdf", report)
     assert not [shape for _, shape, _ in legal.edges(Shape) if isinstance(shape.geometry, NoShape)]
-    assert any("has a geometry that only MuJoCo XML can represent; it is left out" in str(said) for said in report)
+    assert any("has a geometry that only MuJoCo XML can represent; it is left out" in str(diagnostic) for diagnostic in report)
 
 
 WEDGE = "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 3"

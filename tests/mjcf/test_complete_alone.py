@@ -115,13 +115,13 @@ def test_without_mujoco_there_is_an_error_and_no_inertia(monkeypatch: pytest.Mon
     monkeypatch.setitem(sys.modules, "mujoco", None)
     robot, report = robot_of(), Report()
     assert complete(robot, lambda: pytest.fail("it was printed"), NoFiles(), report) is robot
-    assert [str(said)[:15] for said in report] == ["error[HX301]: M"]
+    assert [str(diagnostic)[:15] for diagnostic in report] == ["error[HX301]: M"]
 
 
 def test_what_weighs_nothing_is_left_to_the_whole_robot_which_mujoco_refuses() -> None:
     robot, report = robot_of('<geom size=".1" mass="0"/>'), Report()
     assert complete(robot, lambda: (robot, write(robot).encode()), NoFiles(), report) == robot
-    assert [str(said)[:15] for said in report] == ["error[HX302]: M"]
+    assert [str(diagnostic)[:15] for diagnostic in report] == ["error[HX302]: M"]
 
 
 def test_nothing_is_printed_for_a_robot_of_solids() -> None:

@@ -118,7 +118,7 @@ def test_files_of_attached_models_are_seen_from_the_main_file(folder: Path) -> N
 def test_a_note_says_that_mujoco_expanded_it() -> None:
     report = Report()
     read_text('<mujoco><worldbody><flexcomp name="f" count="2 2 1" mass="1"/></worldbody></mujoco>', report)
-    assert [said.message for said in report] == ["<flexcomp> was expanded by MuJoCo; what it became has its line"]
+    assert [diagnostic.message for diagnostic in report] == ["<flexcomp> was expanded by MuJoCo; what it became has its line"]
 
 
 def test_no_place_is_one_of_the_expanded_text() -> None:
@@ -169,5 +169,5 @@ def test_a_file_that_vanishes_is_missing() -> None:
 
 def test_what_mujoco_says_names_the_files_as_the_author_did() -> None:
     main = '<mujoco><worldbody><flexcomp name="f" type="mesh" file="no.obj" mass="1"/></worldbody></mujoco>'
-    said = "MuJoCo refuses to expand <flexcomp>: XML Error: Error: Error opening file 'no.obj' Element 'flexcomp'"
-    assert refused(main) == f"main.xml:1: error[HX302]: {said}"
+    message = "MuJoCo refuses to expand <flexcomp>: XML Error: Error: Error opening file 'no.obj' Element 'flexcomp'"
+    assert refused(main) == f"main.xml:1: error[HX302]: {message}"

@@ -34,8 +34,8 @@ def joint(name: str, parent: str, child: str, content: str = "", kind: str = "re
 
 
 def visual(geometry: str, extra: str = "", name: str = "") -> str:
-    said = f' name="{name}"' if name else ""
-    return f"<visual{said}><geometry>{geometry}</geometry>{extra}</visual>"
+    given = f' name="{name}"' if name else ""
+    return f"<visual{given}><geometry>{geometry}</geometry>{extra}</visual>"
 
 
 def mesh(uri: str, scale: str = "") -> str:
@@ -66,18 +66,18 @@ def test_products_of_inertia_and_the_inertial_of_the_root_are_kept() -> None:
     assert tensor_in_body(model, 1) == pytest.approx(np.array([[1.0, 0.1, -0.2], [0.1, 2.0, 0.3], [-0.2, 0.3, 2.5]]), abs=1e-12)
 
 
-def test_massless_links_in_the_middle_of_a_chain_get_the_least_inertia_and_that_is_said() -> None:
+def test_massless_links_in_the_middle_of_a_chain_get_the_least_inertia_and_that_is_reported() -> None:
     links = [link("a"), link("middle", ""), link("c")]
     done = convert_text(robot(*links, joint("1", "a", "middle"), joint("2", "middle", "c")))
     assert done.model().body("middle").mass[0] == 1e-10
-    assert done.said("HX103") == [
+    assert done.reported("HX103") == [
         "warning HX103 body 'middle': moves and has no mass; mass 1e-10 and inertia 1e-10 1e-10 1e-10 0 0 0 are written"
     ]
 
 
 def test_a_massless_link_that_carries_a_fixed_mass_is_left_alone() -> None:
     done = convert_text(robot(link("a"), link("m", ""), link("c"), joint("1", "a", "m"), joint("2", "m", "c", kind="fixed")))
-    assert (done.model().body("m").mass[0], done.said("HX103")) == (0.0, [])
+    assert (done.model().body("m").mass[0], done.reported("HX103")) == (0.0, [])
 
 
 # ---- names and structure ---------------------------------------------------------------------------------------------------------
@@ -101,7 +101,7 @@ def test_a_root_link_called_world_is_the_world_and_its_shapes_stay() -> None:
     done = convert_text(robot(floor, link("arm"), joint("j", "world", "arm")))
     model = done.model()
     assert (model.nbody, model.body("arm").parentid[0], model.geom(0).bodyid[0]) == (2, 0, 0)
-    assert done.said("HX101", "HX102") == []
+    assert done.reported("HX101", "HX102") == []
 
 
 def test_fixed_links_stay_bodies_of_their_own(tmp_path: Path) -> None:
@@ -128,8 +128,8 @@ def test_an_axis_that_is_not_of_unit_length_is_normalised(tmp_path: Path) -> Non
 
 
 def test_numbers_arrive_to_the_last_digit() -> None:
-    said = '<origin xyz="0.1234567890123456 1e-17 -0.3333333333333333"/><axis xyz="0 0 1"/><dynamics damping="0.12345678901234568"/>'
-    model = convert_text(robot(link("a"), link("b"), joint("1", "a", "b", said))).model()
+    given = '<origin xyz="0.1234567890123456 1e-17 -0.3333333333333333"/><axis xyz="0 0 1"/><dynamics damping="0.12345678901234568"/>'
+    model = convert_text(robot(link("a"), link("b"), joint("1", "a", "b", given))).model()
     assert list(model.body_pos[2]) == [0.1234567890123456, 1e-17, -0.3333333333333333]
     assert model.dof_damping[0] == 0.12345678901234568
 
@@ -144,8 +144,8 @@ def test_roll_pitch_and_yaw_come_back_without_a_record_of_them(tmp_path: Path) -
 
 
 def test_limits_damping_friction_and_effort_arrive() -> None:
-    said = '<dynamics damping="0.5" friction="0.25"/>'
-    model = convert_text(robot(link("a"), link("b"), joint("1", "a", "b", said))).model()
+    given = '<dynamics damping="0.5" friction="0.25"/>'
+    model = convert_text(robot(link("a"), link("b"), joint("1", "a", "b", given))).model()
     assert (list(model.jnt_range[0]), list(model.jnt_actfrcrange[0])) == ([-1.0, 1.0], [-10.0, 10.0])
     assert (model.dof_damping[0], model.dof_frictionloss[0]) == (0.5, 0.25)
 
@@ -159,7 +159,7 @@ def test_missing_limits_do_not_lock_the_joint() -> None:
     bare = '<joint name="1" type="revolute"><parent link="a"/><child link="b"/><limit effort="1" velocity="1"/></joint>'
     done = convert_text(robot(link("a"), link("b"), bare))
     assert not done.model().jnt_limited[0]
-    assert done.said("HX101") == [
+    assert done.reported("HX101") == [
         "warning HX101 joint '1': both limits are 0, as where URDF leaves them out; it is written without position limits"
     ]
 
@@ -234,10 +234,10 @@ def test_shapes_have_half_sizes_and_the_classes_of_their_role() -> None:
     assert model.body("a").mass[0] == 1.0
 
 
-def test_a_box_of_size_zero_compiles_and_that_is_said() -> None:
+def test_a_box_of_size_zero_compiles_and_that_is_reported() -> None:
     done = convert_text(robot(link("a", visual('<box size="0 0 0"/>'))))
     assert done.model().ngeom == 1
-    assert done.said("HX101") == ["warning HX101 shape 'a/visual' has the size [0.0 0.0 0.0]; [1e-06 1e-06 1e-06] is written"]
+    assert done.reported("HX101") == ["warning HX101 shape 'a/visual' has the size [0.0 0.0 0.0]; [1e-06 1e-06 1e-06] is written"]
 
 
 def test_the_second_visual_of_a_name_goes_without() -> None:
@@ -269,7 +269,7 @@ def test_a_mesh_that_is_not_there_leaves_out_its_shapes_and_says_so() -> None:
     missing = mesh("package://p/gone.stl")
     done = convert_text(robot(link("a", visual(missing) + collision(missing))))
     assert done.model().ngeom == 0
-    assert done.said("HX201") == [
+    assert done.reported("HX201") == [
         "warning HX201 mesh 'gone': 'package://p/gone.stl' was not found; "
         "left out: visual 'a/visual' of body 'a', collision 'a/collision' of body 'a'"
     ]
@@ -280,7 +280,7 @@ def test_a_texture_that_is_not_there_leaves_the_colour() -> None:
     done = convert_text(robot(link("a", visual('<sphere radius="1"/>', material))))
     model = done.model()
     assert (model.ntex, list(model.mat_rgba[0])) == (0, [1.0, 0.0, 0.0, 1.0])
-    assert done.said("HX201") == ["warning HX201 texture 'gone': 'package://p/gone.png' was not found; the texture is left out"]
+    assert done.reported("HX201") == ["warning HX201 texture 'gone': 'package://p/gone.png' was not found; the texture is left out"]
 
 
 def test_the_mujoco_extension_of_a_urdf_is_not_obeyed() -> None:

@@ -67,10 +67,10 @@ def test_actuators_of_all_kinds_share_what_they_have_in_common_in_a_class() -> N
     robot = read_text(text)
     model = mujoco.MjModel.from_xml_string(text)
     found = {key.name: dict(actuator.parameters) for key, actuator in robot.vertices(Actuator)}
-    for name, said in found.items():
+    for name, attributes in found.items():
         number = model.actuator(name).id
-        assert said["ctrlrange"] == tuple(model.actuator_ctrlrange[number])
-        assert said.get("kp", 1.0) == model.actuator_gainprm[number, 0]
+        assert attributes["ctrlrange"] == tuple(model.actuator_ctrlrange[number])
+        assert attributes.get("kp", 1.0) == model.actuator_gainprm[number, 0]
         assert model.actuator_gear[number, 0] == 7.0
 
 
@@ -90,7 +90,7 @@ def test_an_own_orientation_replaces_that_of_the_class_whatever_its_kind() -> No
 
 
 @pytest.mark.parametrize(
-    ("head", "said", "quat"),
+    ("head", "orientation", "quat"),
     [
         ("", 'euler="10 20 30"', (0.9437144, 0.1276794, 0.1448781, 0.2685358)),
         ('<compiler eulerseq="XYZ"/>', 'euler="10 20 30"', (0.9515485, 0.0381346, 0.1893079, 0.2392983)),
@@ -101,8 +101,8 @@ def test_an_own_orientation_replaces_that_of_the_class_whatever_its_kind() -> No
         ('<compiler angle="radian"/>', 'euler="0 0 1.5"', (math.cos(0.75), 0.0, 0.0, math.sin(0.75))),
     ],
 )
-def test_every_notation_of_an_orientation(head: str, said: str, quat: tuple[float, ...]) -> None:
-    robot = read_text(in_world(f'<body name="b" {said}/>', head))
+def test_every_notation_of_an_orientation(head: str, orientation: str, quat: tuple[float, ...]) -> None:
+    robot = read_text(in_world(f'<body name="b" {orientation}/>', head))
     assert robot.parent_joint[Id("body", "b")].parent_pose.quat == pytest.approx(quat, abs=1e-7)
 
 
@@ -166,7 +166,7 @@ def test_the_anchor_of_a_connect_is_the_same_point_seen_from_both_bodies() -> No
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         (in_world('<body quat="1 0 0 0" euler="0 0 0"/>'), "robot.xml:1: error[HX047]: <body> has more than one orientation: quat, euler"),
         (in_world('<body pos="1 2"/>'), "robot.xml:1: error[HX020]: <body pos> is '1 2', expected 3 numbers"),
@@ -202,8 +202,8 @@ def test_the_anchor_of_a_connect_is_the_same_point_seen_from_both_bodies() -> No
         (in_world('<geom type="box" size="1"/>'), "robot.xml:1: error[HX020]: <geom size> is '1', expected 3 numbers for a box"),
     ],
 )
-def test_what_mujoco_refuses_is_refused_with_its_place(text: str, said: str) -> None:
-    assert refused(text) == said
+def test_what_mujoco_refuses_is_refused_with_its_place(text: str, message: str) -> None:
+    assert refused(text) == message
 
 
 def test_a_message_names_the_line_of_the_element() -> None:

@@ -1,4 +1,4 @@
-"""The layout of MJCF for robots from elsewhere: what is said once, and what is left out."""
+"""The layout of MJCF for robots from elsewhere: what is written once, and what is left out."""
 
 from __future__ import annotations
 

@@ -26,15 +26,15 @@ def situations() -> list[tuple[str, str]]:
     return found
 
 
-@pytest.mark.parametrize(("text", "said"), situations())
-def test_mujoco_refuses_it_and_we_say_where_and_why(text: str, said: str) -> None:
+@pytest.mark.parametrize(("text", "message"), situations())
+def test_mujoco_refuses_it_and_we_say_where_and_why(text: str, message: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         with pytest.raises((ValueError, mujoco.FatalError)):
             mujoco.MjModel.from_xml_string(text)
     with pytest.raises(Refusal) as caught:
         read_text(text)
-    assert str(caught.value) == said
+    assert str(caught.value) == message
 
 
 @pytest.mark.parametrize(

@@ -103,8 +103,8 @@ def test_what_mujoco_would_refuse_is_written_so_that_it_loads(name: str, text: s
 def test_check_names_files_that_mujoco_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", str(robot(tmp_path / "home", "r.xml", MJCF))]) != 0
     found = capsys.readouterr()
-    said = [line for line in (found.out + found.err).splitlines() if "HX203" in line]
-    assert [line.partition("error[HX203]: ")[2] for line in said] == [
+    reported = [line for line in (found.out + found.err).splitlines() if "HX203" in line]
+    assert [line.partition("error[HX203]: ")[2] for line in reported] == [
         "the file 'a.stl' is STL as text or with a wrong length; MuJoCo reads only exact binary STL",
         "the file 't.png' is a PNG image that MuJoCo does not read: its chunk sBIT has 3 bytes, and an image of its type needs 4",
     ]

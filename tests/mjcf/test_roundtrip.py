@@ -128,8 +128,8 @@ def test_degrees_and_notations_are_written_as_they_were() -> None:
     geom = '<geom name="g" type="capsule" size="0.1" fromto="0 0 0 1 0 0"/>'
     body = f'<body name="b" euler="12.3 45 -7"><joint name="j" range="-33.3 77.7"/>{geom}</body>'
     written = write(read_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>"))
-    for said in ('euler="12.3 45 -7"', 'range="-33.3 77.7"', 'fromto="0 0 0 1 0 0"'):
-        assert said in written
+    for attribute in ('euler="12.3 45 -7"', 'range="-33.3 77.7"', 'fromto="0 0 0 1 0 0"'):
+        assert attribute in written
 
 
 def test_what_a_class_gives_is_not_written_again() -> None:
@@ -189,7 +189,7 @@ def test_replicate_is_expanded_by_mujoco_with_a_note() -> None:
     report = Report()
     robot = read_text(text, report)
     assert [key.name for key, _ in robot.vertices(Body)] == ["b0", "b1", "b2"]
-    assert [said.message for said in report] == ["<replicate> was expanded by MuJoCo; what it became has its line"]
+    assert [diagnostic.message for diagnostic in report] == ["<replicate> was expanded by MuJoCo; what it became has its line"]
     assert differences(compiled(text), compiled(write(robot))) == []
 
 

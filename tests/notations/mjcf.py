@@ -1,4 +1,4 @@
-"""The same robot said otherwise in MJCF: classes, angles, kinds of rotations, frames, flags, order, digits, blanks."""
+"""The same robot written otherwise in MJCF: classes, angles, kinds of rotations, frames, flags, order, digits, blanks."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ def plain(text: bytes) -> etree._Element:
     for number, element in enumerate(root.iter("geom", "joint")):
         if element.getparent().tag == "equality":
             continue
-        said = dict(element.attrib)
+        written = dict(element.attrib)
         element.attrib.clear()
-        element.attrib.update(classes.get(said.pop("class", "main"), classes.get("main", {})).get(element.tag, {}) | said)
+        element.attrib.update(classes.get(written.pop("class", "main"), classes.get("main", {})).get(element.tag, {}) | written)
         if element.tag == "geom":
             element.set("name", f"geom {number}")
     return root

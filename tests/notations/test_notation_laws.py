@@ -29,7 +29,7 @@ SOME = settings(max_examples=max(4, settings.default.max_examples // 12), deadli
 CHANCES = st.randoms(use_true_random=False)
 CLOSE = Tolerance(1e-9, 1e-9)
 SINGLE = Tolerance(1e-5, 1e-5)
-"""What single precision keeps of metres said in centimetres."""
+"""What single precision keeps of metres given in centimetres."""
 
 SUFFIXES = {"urdf": "urdf", "xacro": "xacro", "mjcf": "xml", "usd": "usda", "hymeko": "hymeko"}
 

@@ -1,4 +1,4 @@
-"""The same robot said otherwise in URDF and in xacro: order, digits, blanks, defaults, angles, expressions."""
+"""The same robot written otherwise in URDF and in xacro: order, digits, blanks, defaults, angles, expressions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The same stage said otherwise: the operations that place prims, which axis is up, the order of prims."""
+"""The same stage written otherwise: the operations that place prims, which axis is up, the order of prims."""
 
 from __future__ import annotations
 

@@ -365,11 +365,11 @@ def test_the_sarif_report_has_a_result_for_each_diagnostic_and_each_loss(folder:
 def test_a_diagnostic_without_a_line_is_a_result_without_a_region() -> None:
     from hymeko_x.reporting.sarif import sarif
 
-    said = (
+    reported = (
         Diagnostic(codes.BAD_NUMBER, Severity.WARNING, "odd", Origin("a.urdf"), hint="mend it"),
         Diagnostic(codes.BUG, Severity.NOTE, "x"),
     )
-    (run,) = sarif(document(("a.urdf", "urdf"), ("b", "mjcf"), said, None))["runs"]  # type: ignore[misc]
+    (run,) = sarif(document(("a.urdf", "urdf"), ("b", "mjcf"), reported, None))["runs"]  # type: ignore[misc]
     first, second = run["results"]
     assert first["message"] == {"text": "odd (mend it)"}
     assert first["locations"] == [{"physicalLocation": {"artifactLocation": {"uri": "a.urdf"}}}]

@@ -198,5 +198,5 @@ def shown(robot: Robot, target: str) -> tuple[object, ...]:
     package = result.package
     contents = PackageFiles(package, files)
     beside = sorted((name, contents.read(name)) for name in (*package.files, *package.copies))
-    said = [(item.code.id, item.message) for item in report]
-    return package.main, tuple(beside), tuple(map(str, result.losses or ())), tuple(said)
+    reported = [(item.code.id, item.message) for item in report]
+    return package.main, tuple(beside), tuple(map(str, result.losses or ())), tuple(reported)

@@ -247,10 +247,10 @@ def xacro_edits() -> st.SearchStrategy[Edit]:
 
 def _call(root: Any, value: float, place: int) -> str:
     calls = [call for call in root.iter() if isinstance(call.tag, str) and call.tag.startswith(_XACRO_NAME)]
-    said = [(call, name) for call in calls for name in ("mass", "upper", "radius") if _is_number(call.get(name))]
-    if not said:
+    numbers = [(call, name) for call in calls for name in ("mass", "upper", "radius") if _is_number(call.get(name))]
+    if not numbers:
         return "nothing"
-    call, name = _chosen(said, place)
+    call, name = _chosen(numbers, place)
     call.set(name, str(float(call.get(name)) + value))
     return f"{call.tag} {name}"
 

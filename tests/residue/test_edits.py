@@ -224,7 +224,7 @@ def test_two_dofs_with_one_name_get_two_in_mjcf() -> None:
     report = Report()
     model = mujoco.MjModel.from_xml_string(hx.dumps(hx.loads(text, "hymeko"), "mjcf", report=report, keep="inside"))
     assert [model.joint(number).name for number in range(model.njnt)] == ["x", "o", "y", "o#2"]
-    assert [said.code for said in report if said.severity.rank] == [codes.RENAMED]
+    assert [diagnostic.code for diagnostic in report if diagnostic.severity.rank] == [codes.RENAMED]
 
 
 @pytest.mark.unread("HX204")
@@ -254,7 +254,7 @@ def test_a_deleted_link_takes_along_what_was_carried_on_it() -> None:
         Id("loop", "chained"),
     } <= gone
     assert not {Id("body", "left_shin"), Id("frame", "left_sole"), Id("sensor", "imu"), Id("drive", "left_knee")} & gone
-    assert any("right_sole" in str(said) for said in report)
+    assert any("right_sole" in str(diagnostic) for diagnostic in report)
     assert done == [""]
 
 
@@ -279,7 +279,7 @@ def test_a_damaged_residue_is_one_warning_and_the_file_is_read_without() -> None
         report = Report()
         assert broken != text
         hx.loads(broken, "urdf", report=report)
-        assert [said.code.id for said in report] == ["HX107"] or "dofs.x" in broken
+        assert [diagnostic.code.id for diagnostic in report] == ["HX107"] or "dofs.x" in broken
 
 
 @pytest.mark.unread("HX204")
@@ -327,7 +327,7 @@ def test_a_file_that_was_copied_is_found_on_the_way_back(tmp_path: Path) -> None
     back = hx.load(tmp_path / "b" / "c" / "robot.xml").mechanism
     assert [mesh.uri for _, mesh in back.vertices(Mesh)] == ["../parts/plate.stl"]
     result = hx.convert(tmp_path / "b" / "c" / "robot.xml", tmp_path / "b" / "home.urdf")
-    assert [said.code for said in result.report] == [codes.KEPT_USED]
+    assert [diagnostic.code for diagnostic in result.report] == [codes.KEPT_USED]
     assert [(tmp_path / "b" / name).is_file() for name in (*result.package.files, *result.package.copies)] == [True]
 
 

@@ -36,8 +36,8 @@ def test_other_readers_see_the_same(
     with warnings.catch_warnings(), caplog.at_level(logging.WARNING):
         warnings.simplefilter("error")
         ASSERTS[target](carrying, pure)
-    said = capfd.readouterr()
-    assert "hymeko" not in said.out + said.err + caplog.text
+    printed = capfd.readouterr()
+    assert "hymeko" not in printed.out + printed.err + caplog.text
 
 
 def test_the_only_trace_in_a_model_is_one_text() -> None:

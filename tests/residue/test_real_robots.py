@@ -34,7 +34,7 @@ def assert_comes_back(robot: Path, target: str, folder: Path) -> None:
     there = folder / f"there{SUFFIXES[target]}"
     hx.convert(robot, there, to_format=target, keep="beside")
     assert unequal(source, hx.load(there, target, report=report).mechanism) == []
-    assert [str(said) for said in report if said.code.id in ("HX105", "HX106", "HX107")] == []
+    assert [str(diagnostic) for diagnostic in report if diagnostic.code.id in ("HX105", "HX106", "HX107")] == []
 
 
 def _id(value: object) -> str:

@@ -55,7 +55,7 @@ def test_mujoco_loads_and_saves(keep: str, text: str, tmp_path: Path) -> None:
     (tmp_path / "b.xml").write_text(spec.to_xml())
     report = Report()
     after = hx.load(tmp_path / "b.xml", report=report).mechanism
-    assert "HX112" in [said.code.id for said in report]
+    assert "HX112" in [diagnostic.code.id for diagnostic in report]
     velocities = [[dof.limits.velocity for view in robot.joints.values() for dof in view.joint.dofs] for robot in (before, after)]
     assert velocities[0] == velocities[1]
     assert any(velocities[0])

@@ -31,31 +31,31 @@ def converted(folder: Path, shapes: str, **options: object) -> tuple[Inertial | 
 
 
 def test_a_box_counts_exactly_where_it_is(tmp_path: Path) -> None:
-    inertial, said = converted(tmp_path, BOX, density=500.0)
+    inertial, reported = converted(tmp_path, BOX, density=500.0)
     assert inertial is not None
     assert (inertial.mass, inertial.com) == (pytest.approx(3.0), (0.0, 0.0, 1.0))
     expected = (0.25 * (0.1**2 + 0.3**2), 0.25 * (0.2**2 + 0.3**2), 0.25 * (0.1**2 + 0.2**2), 0.0, 0.0, 0.0)
     assert inertial.tensor == pytest.approx(expected, abs=1e-12)
-    assert said == ["--density 500: 1 body with masses and inertias of their collision shapes, 3 kg together"]
+    assert reported == ["--density 500: 1 body with masses and inertias of their collision shapes, 3 kg together"]
 
 
 def test_a_closed_mesh_counts_as_the_box_that_it_is(tmp_path: Path) -> None:
     trimesh.creation.box((0.1, 0.2, 0.3)).export(tmp_path / "box.stl")
-    inertial, said = converted(tmp_path, MESH.format(role="collision", file="box.stl"), density=500.0)
+    inertial, reported = converted(tmp_path, MESH.format(role="collision", file="box.stl"), density=500.0)
     assert inertial is not None
     assert inertial.mass == pytest.approx(6.0, rel=1e-6)
     assert inertial.com == pytest.approx((0.5, 0.0, 0.0), abs=1e-6)
     assert inertial.tensor == pytest.approx((0.065, 0.065, 0.04, 0.0, 0.0, 0.0), rel=1e-6, abs=1e-9)
-    assert len(said) == 1
+    assert len(reported) == 1
 
 
 def test_an_open_mesh_counts_as_its_hull_and_that_is_reported(tmp_path: Path) -> None:
     box = trimesh.creation.box((0.1, 0.2, 0.3))
     trimesh.Trimesh(box.vertices, box.faces[1:]).export(tmp_path / "open.stl")
-    inertial, said = converted(tmp_path, MESH.format(role="visual", file="open.stl"), inertia_from="visual")
+    inertial, reported = converted(tmp_path, MESH.format(role="visual", file="open.stl"), inertia_from="visual")
     assert inertial is not None
     assert inertial.mass == pytest.approx(12.0, rel=1e-6)
-    assert said == [
+    assert reported == [
         "--density 1000: 1 body with masses and inertias of their visual shapes, 12 kg together",
         "--density 1000: 1 mesh not closed, taken as convex hulls: 'open'",
     ]
@@ -73,9 +73,9 @@ def test_hulls_are_taken_where_they_are_asked_for(tmp_path: Path) -> None:
 
 
 def test_a_missing_mesh_has_no_mass_and_is_named(tmp_path: Path) -> None:
-    inertial, said = converted(tmp_path, MESH.format(role="collision", file="nowhere.stl"), density=1000.0)
+    inertial, reported = converted(tmp_path, MESH.format(role="collision", file="nowhere.stl"), density=1000.0)
     assert inertial is None
-    assert said[1] == "--density 1000: 1 mesh flat, missing or unreadable: 'nowhere'"
+    assert reported[1] == "--density 1000: 1 mesh flat, missing or unreadable: 'nowhere'"
 
 
 def test_without_the_options_nothing_is_made_up_and_the_warning_names_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -51,8 +51,8 @@ def legal(mechanism: Mechanism, options: Options | None = None) -> tuple[Mechani
     assert choose(chosen, options or Options(), Report()) == chosen
     result = legalize(chosen, "mjcf", report)
     assert legalize(result, "mjcf", Report()) == result
-    said = [f"{d.severity.value} {d.code.id} {d.message}" for d in report]
-    return result, said if options else [words for words in said if "has no parent joint; it is fixed" not in words]
+    reported = [f"{d.severity.value} {d.code.id} {d.message}" for d in report]
+    return result, reported if options else [words for words in reported if "has no parent joint; it is fixed" not in words]
 
 
 def dofs_of(mechanism: Mechanism, name: str) -> tuple[Dof, ...]:
@@ -66,7 +66,7 @@ def inertial_of(mechanism: Mechanism, name: str) -> Inertial | None:
 # ---- all rules ---------------------------------------------------------------------------------------------------------------
 
 
-def test_a_legal_mechanism_stays_as_it_is_and_nothing_is_said() -> None:
+def test_a_legal_mechanism_stays_as_it_is_and_nothing_is_reported() -> None:
     mechanism = chain(hinge(axis=Z, limits=Limits(-1.0, 1.0, 2.0, 3.0)), hinge(axis=X))
     assert legal(mechanism) == (mechanism, [])
 
@@ -91,10 +91,10 @@ def test_legalizing_twice_is_legalizing_once(mechanism: Mechanism, options: Opti
 
 def test_an_empty_name_and_one_that_xml_cannot_hold_are_replaced() -> None:
     mechanism = chain(hinge(), vertices={Id("frame", ""): Frame(), Id("frame", "a\0b"): Frame()})
-    result, said = legal(mechanism)
+    result, reported = legal(mechanism)
     assert Id("frame", "frame") in result.graph.vertices
     assert Id("frame", "a_b") in result.graph.vertices
-    assert said == [
+    assert reported == [
         "warning HX102 the name of a frame is empty; it is written as 'frame'",
         "warning HX102 the name of a frame 'a\\x00b' has characters that XML cannot hold; it is written as 'a_b'",
     ]
@@ -102,9 +102,9 @@ def test_an_empty_name_and_one_that_xml_cannot_hold_are_replaced() -> None:
 
 def test_meshes_of_the_same_name_are_told_apart() -> None:
     one, two = Mesh("one.stl", name="part"), Mesh("two.stl", name="part")
-    result, said = legal(chain(vertices={Id("mesh", "a"): one, Id("mesh", "b"): two}))
+    result, reported = legal(chain(vertices={Id("mesh", "a"): one, Id("mesh", "b"): two}))
     assert result.vertex(Id("mesh", "b"), Mesh).name == "part#2"
-    assert said == ["note HX102 another mesh is called 'part' already; this one is written as 'part#2'"]
+    assert reported == ["note HX102 another mesh is called 'part' already; this one is written as 'part#2'"]
 
 
 # ---- world and base ------------------------------------------------------------------------------------------------------------
@@ -118,16 +118,16 @@ def with_world_link(inertial: Inertial | None) -> Mechanism:
 
 
 def test_a_root_link_called_world_is_the_world() -> None:
-    result, said = legal(with_world_link(None), Options())
+    result, reported = legal(with_world_link(None), Options())
     assert body("world") not in result.graph.vertices
     assert result.joints[joint("stand")].parent == WORLD
-    assert said == []
+    assert reported == []
 
 
 def test_a_root_link_called_world_with_a_mass_is_renamed() -> None:
-    result, said = legal(with_world_link(SOLID))
+    result, reported = legal(with_world_link(SOLID))
     assert inertial_of(result, "world_link") == SOLID
-    assert said == [
+    assert reported == [
         "warning HX102 link 'world' has a mass, so it is not the world itself, which alone may have this name; "
         "it is written as 'world_link'"
     ]
@@ -136,27 +136,27 @@ def test_a_root_link_called_world_with_a_mass_is_renamed() -> None:
 def test_a_link_called_world_inside_the_tree_is_renamed() -> None:
     mechanism = chain(hinge(axis=Z))
     child = {joint("j2"): joint_edge(Joint(), body("b1"), body("world"))}
-    result, said = legal(mechanism.replace(vertices={body("world"): Body()}, edges=child))
+    result, reported = legal(mechanism.replace(vertices={body("world"): Body()}, edges=child))
     assert result.joints[joint("j2")].child == body("world_link")
-    assert [line.split(",")[0] for line in said] == ["warning HX102 link 'world' is not the root"]
+    assert [line.split(",")[0] for line in reported] == ["warning HX102 link 'world' is not the root"]
 
 
-def test_an_open_base_is_fixed_by_default_and_that_is_said() -> None:
+def test_an_open_base_is_fixed_by_default_and_that_is_reported() -> None:
     mechanism = chain(hinge(axis=Z))
     assert legal(mechanism, Options()) == (mechanism, ["note HX101 body 'b0' has no parent joint; it is fixed to the world"])
 
 
 def test_an_open_base_floats_where_the_user_wants_it() -> None:
-    result, said = legal(chain(hinge(axis=Z)), Options(base="free"))
+    result, reported = legal(chain(hinge(axis=Z)), Options(base="free"))
     view = result.parent_joint[body("b0")]
     assert (view.parent, [dof.kind for dof in view.joint.dofs]) == (WORLD, [DofKind.FREE])
-    assert said == []
+    assert reported == []
 
 
 @pytest.mark.unread("HX101")
-def test_a_base_that_the_source_fixes_does_not_float_and_that_is_said() -> None:
-    _, said = legal(with_world_link(None), Options(base="free"))
-    assert said == ["warning HX101 body 'b0' does not float: joint 'stand' fixes it to the world"]
+def test_a_base_that_the_source_fixes_does_not_float_and_that_is_reported() -> None:
+    _, reported = legal(with_world_link(None), Options(base="free"))
+    assert reported == ["warning HX101 body 'b0' does not float: joint 'stand' fixes it to the world"]
 
 
 # ---- joints --------------------------------------------------------------------------------------------------------------------
@@ -164,13 +164,13 @@ def test_a_base_that_the_source_fixes_does_not_float_and_that_is_said() -> None:
 
 def test_a_screw_becomes_a_hinge_and_a_coupled_slide() -> None:
     screw = Joint((Dof(DofKind.SCREW, Z, Limits(-1.0, 1.0), pitch=0.02, ref=0.5),))
-    result, said = legal(chain(screw))
+    result, reported = legal(chain(screw))
     turn, slide = dofs_of(result, "j1")
     assert (turn.kind, turn.name, turn.limits, turn.ref) == (DofKind.HINGE, "j1", Limits(-1.0, 1.0), 0.5)
     assert (slide.kind, slide.name, slide.axis) == (DofKind.SLIDE, "j1_slide", Z)
     ((_, _, arcs),) = result.edges(Coupling)
     assert [(arc.role, arc.weight) for arc in arcs] == [("j1_slide", (1.0,)), ("j1", (-0.01, 0.02))]
-    assert said == ["note HX101 joint 'j1' is a screw; it is written as hinge 'j1' and slide 'j1_slide', coupled by the pitch"]
+    assert reported == ["note HX101 joint 'j1' is a screw; it is written as hinge 'j1' and slide 'j1_slide', coupled by the pitch"]
 
 
 def test_what_follows_a_screw_follows_its_hinge() -> None:
@@ -181,14 +181,14 @@ def test_what_follows_a_screw_follows_its_hinge() -> None:
 
 
 def test_a_free_joint_inside_the_tree_becomes_three_slides_and_a_ball() -> None:
-    result, said = legal(chain(FREE))
+    result, reported = legal(chain(FREE))
     assert [(dof.kind, dof.name) for dof in dofs_of(result, "j1")] == [
         (DofKind.SLIDE, "j1_TX"),
         (DofKind.SLIDE, "j1_TY"),
         (DofKind.SLIDE, "j1_TZ"),
         (DofKind.BALL, "j1_R"),
     ]
-    assert said == [
+    assert reported == [
         "note HX101 joint 'j1' floats below body 'b0', where only a child of the world may; it is written as three slides and a ball"
     ]
 
@@ -196,16 +196,16 @@ def test_a_free_joint_inside_the_tree_becomes_three_slides_and_a_ball() -> None:
 def test_the_dofs_of_a_planar_joint_get_names_of_their_own() -> None:
     planar = Joint((Dof(DofKind.SLIDE, X), Dof(DofKind.SLIDE, Y), Dof(DofKind.HINGE, Z)))
     other = Joint((Dof(DofKind.HINGE, Z, name="j1_TX"),))
-    result, said = legal(chain(planar, other))
+    result, reported = legal(chain(planar, other))
     assert [dof.name for dof in dofs_of(result, "j1")] == ["j1_TX#2", "j1_TY", "j1_RZ"]
-    assert said == ["warning HX102 'j1_TX' would name two dofs; the one of joint 'j1' is written as 'j1_TX#2'"]
+    assert reported == ["warning HX102 'j1_TX' would name two dofs; the one of joint 'j1' is written as 'j1_TX#2'"]
 
 
 def test_seven_hinges_on_one_joint_are_spread_over_two_bodies() -> None:
-    result, said = legal(chain(Joint((Dof(DofKind.HINGE, Z),) * 7)))
+    result, reported = legal(chain(Joint((Dof(DofKind.HINGE, Z),) * 7)))
     assert [len(view.joint.dofs) for view in result.joints.values()] == [1, 6]
     assert result.parent_joint[body("b1")].parent == body("b1_carrier")
-    assert any("cannot all sit on one body; 1 body in between carries the first ones" in line for line in said)
+    assert any("cannot all sit on one body; 1 body in between carries the first ones" in line for line in reported)
 
 
 def test_a_rotation_below_a_ball_gets_a_body_of_its_own_and_arcs_follow_it() -> None:
@@ -230,10 +230,10 @@ def diamond(*closing: Dof) -> Mechanism:
 
 
 def test_a_fixed_second_parent_becomes_a_weld() -> None:
-    result, said = legal(diamond())
+    result, reported = legal(diamond())
     ((key, loop, arcs),) = result.edges(Loop)
     assert (key, loop.kind, [arc.target for arc in arcs]) == (Id("loop", "again"), "weld", [body("b0"), body("b2")])
-    assert said == ["note HX101 joint 'again' holds body 'b2', which has another parent; it is written as a closure of the loop"]
+    assert reported == ["note HX101 joint 'again' holds body 'b2', which has another parent; it is written as a closure of the loop"]
 
 
 def test_a_second_hinge_becomes_two_points_that_stay_together() -> None:
@@ -243,9 +243,9 @@ def test_a_second_hinge_becomes_two_points_that_stay_together() -> None:
 
 
 def test_a_second_slide_is_left_out_and_that_is_a_warning() -> None:
-    result, said = legal(diamond(Dof(DofKind.SLIDE, Z)))
+    result, reported = legal(diamond(Dof(DofKind.SLIDE, Z)))
     assert not list(result.edges(Loop))
-    assert said == [
+    assert reported == [
         "warning HX104 joint 'again' holds body 'b2', which has another parent; a loop cannot be closed by such a joint, which is left out"
     ]
 
@@ -262,7 +262,7 @@ def test_bodies_in_a_ring_without_a_root_are_opened_once() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given_limits", "written", "said"),
+    ("given_limits", "written", "reported"),
     [
         (Limits(-math.inf, math.inf), Limits(), []),
         (Limits(1.0, -1.0), Limits(), ["warning lower limit 1.0 is above upper limit -1.0; it is written without position limits"]),
@@ -280,10 +280,10 @@ def test_bodies_in_a_ring_without_a_root_are_opened_once() -> None:
         (Limits(-1.0, 1.0, 2.0, 3.0), Limits(-1.0, 1.0, 2.0, 3.0), []),
     ],
 )
-def test_limits_become_intervals(given_limits: Limits, written: Limits, said: list[str]) -> None:
+def test_limits_become_intervals(given_limits: Limits, written: Limits, reported: list[str]) -> None:
     result, lines = legal(chain(hinge(axis=Z, limits=given_limits)))
     assert dofs_of(result, "j1")[0].limits == written
-    assert [line.replace("HX101 joint 'j1': ", "") for line in lines] == said
+    assert [line.replace("HX101 joint 'j1': ", "") for line in lines] == reported
 
 
 # ---- couplings -----------------------------------------------------------------------------------------------------------------
@@ -294,16 +294,16 @@ def coupled(leader: Id, *coefficients: float, joints: tuple[Joint, ...] = (hinge
 
 
 def test_a_coupling_to_a_joint_that_does_not_exist_is_left_out() -> None:
-    result, said = legal(coupled(joint("nobody"), 0.0, 1.0))
+    result, reported = legal(coupled(joint("nobody"), 0.0, 1.0))
     assert not list(result.edges(Coupling))
-    assert said == ["warning HX104 coupling 'c' is left out: joint 'nobody' does not exist"]
+    assert reported == ["warning HX104 coupling 'c' is left out: joint 'nobody' does not exist"]
 
 
 def test_a_coupling_to_a_fixed_joint_stays_and_holds_the_follower() -> None:
     mechanism = coupled(joint("j1"), 0.3, 1.0, joints=(Joint(), hinge(axis=Z)))
-    result, said = legal(mechanism)
+    result, reported = legal(mechanism)
     assert result == mechanism
-    assert said == ["note HX101 coupling 'c' follows joint 'j1', which is fixed; the follower is held at the constant of the relation"]
+    assert reported == ["note HX101 coupling 'c' follows joint 'j1', which is fixed; the follower is held at the constant of the relation"]
 
 
 def test_a_fixed_follower_and_a_joint_that_follows_itself_are_left_out() -> None:
@@ -314,18 +314,18 @@ def test_a_fixed_follower_and_a_joint_that_follows_itself_are_left_out() -> None
 
 
 def test_a_coupling_of_the_fifth_power_is_left_out() -> None:
-    _, said = legal(coupled(joint("j1"), 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
-    assert said == ["warning HX104 coupling 'c' is left out: its polynomial has a power above 4"]
+    _, reported = legal(coupled(joint("j1"), 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+    assert reported == ["warning HX104 coupling 'c' is left out: its polynomial has a power above 4"]
 
 
 # ---- inertia -------------------------------------------------------------------------------------------------------------------
 
 
 def test_a_moving_body_without_mass_gets_the_least_one() -> None:
-    result, said = legal(chain(hinge(axis=Z), inertial=None))
+    result, reported = legal(chain(hinge(axis=Z), inertial=None))
     assert inertial_of(result, "b1") == Inertial(LEAST, tensor=(LEAST, LEAST, LEAST, 0.0, 0.0, 0.0))
     assert inertial_of(result, "b0") is None
-    assert said == ["warning HX103 body 'b1': moves and has no mass; mass 1e-10 and inertia 1e-10 1e-10 1e-10 0 0 0 are written"]
+    assert reported == ["warning HX103 body 'b1': moves and has no mass; mass 1e-10 and inertia 1e-10 1e-10 1e-10 0 0 0 are written"]
 
 
 def test_a_moving_body_with_a_mass_fixed_to_it_needs_none_of_its_own() -> None:
@@ -348,9 +348,9 @@ def test_a_mass_without_extension_keeps_its_mass_and_gets_the_least_moments() ->
 
 
 def test_moments_that_break_the_triangle_inequality_are_repaired_by_the_smallest_change() -> None:
-    result, said = legal(chain(inertial=Inertial(1.0, tensor=(1.0, 1.0, 5.0, 0.0, 0.0, 0.0))))
+    result, reported = legal(chain(inertial=Inertial(1.0, tensor=(1.0, 1.0, 5.0, 0.0, 0.0, 0.0))))
     assert inertial_of(result, "b0") == Inertial(1.0, tensor=(2.0, 2.0, 4.0, 0.0, 0.0, 0.0))
-    assert said == [
+    assert reported == [
         "warning HX103 body 'b0': of the principal moments 1.0, 1.0, 5.0 the last exceeds the sum of the others: "
         "1 1 5 0 0 0 becomes 2 2 4 0 0 0"
     ]
@@ -363,14 +363,14 @@ def test_a_flat_plate_is_physical_to_the_last_bit() -> None:
 
 def test_a_change_by_rounding_alone_is_a_note() -> None:
     noise = Inertial(1.0, tensor=(0.0, 0.0, 0.0, 0.0, 2.4e-35, 0.0))
-    _, said = legal(chain(inertial=noise))
-    assert [line.split(":")[0] for line in said] == ["note HX103 body 'b0'"]
+    _, reported = legal(chain(inertial=noise))
+    assert [line.split(":")[0] for line in reported] == ["note HX103 body 'b0'"]
 
 
 def test_a_negative_mass_becomes_none() -> None:
-    result, said = legal(chain(inertial=Inertial(-1.0, tensor=(1.0, 1.0, 1.0, 0.0, 0.0, 0.0))))
+    result, reported = legal(chain(inertial=Inertial(-1.0, tensor=(1.0, 1.0, 1.0, 0.0, 0.0, 0.0))))
     assert inertial_of(result, "b0") == Inertial(0.0, tensor=(1.0, 1.0, 1.0, 0.0, 0.0, 0.0))
-    assert said == ["warning HX103 body 'b0': mass -1.0 is negative; 0 is written"]
+    assert reported == ["warning HX103 body 'b0': mass -1.0 is negative; 0 is written"]
 
 
 COMPONENT = st.floats(-2.0, 2.0)
@@ -410,33 +410,33 @@ def shaped(geometry: object, *, on: str = "b0", name: str | None = None, mesh: I
     ],
 )
 def test_a_size_of_zero_becomes_a_very_small_one(source: object, written: object) -> None:
-    result, said = legal(shaped(source))
+    result, reported = legal(shaped(source))
     assert result.shapes[body("b0")][0].shape.geometry == written
-    assert [line.split(" has ")[0] for line in said] == ["warning HX101 shape 's'"]
+    assert [line.split(" has ")[0] for line in reported] == ["warning HX101 shape 's'"]
 
 
 def test_a_shape_without_geometry_or_without_its_mesh_is_left_out() -> None:
     for mechanism in (shaped(NoShape()), shaped(MeshShape()), shaped(MeshShape(), mesh=Id("mesh", "gone"))):
-        result, said = legal(mechanism)
+        result, reported = legal(mechanism)
         assert not result.shapes
-        assert [line.split(" has ")[0] for line in said] == ["note HX104 shape 's'"]
+        assert [line.split(" has ")[0] for line in reported] == ["note HX104 shape 's'"]
 
 
 def test_a_plane_on_a_moving_body_becomes_a_thin_box_or_is_left_out() -> None:
-    finite, said = legal(shaped(Plane((1.0, 2.0)), on="b1"))
+    finite, reported = legal(shaped(Plane((1.0, 2.0)), on="b1"))
     assert finite.shapes[body("b1")][0].shape.geometry == Box((2.0, 4.0, 1e-6))
-    assert said == ["note HX101 shape 's' is a plane on a body that moves; it is written as a thin box"]
-    infinite, said = legal(shaped(Plane(), on="b1"))
+    assert reported == ["note HX101 shape 's' is a plane on a body that moves; it is written as a thin box"]
+    infinite, reported = legal(shaped(Plane(), on="b1"))
     assert not infinite.shapes
-    assert said == ["warning HX104 shape 's' is an infinite plane on a body that moves; it is left out"]
+    assert reported == ["warning HX104 shape 's' is an infinite plane on a body that moves; it is left out"]
     assert legal(shaped(Plane(), on="b0"))[1] == []
 
 
 def test_only_the_first_shape_of_a_name_keeps_it() -> None:
     shape = Shape(Sphere(1.0), Role.VISUAL, "skin")
-    result, said = legal(chain(edges={Id("shape", n): shape_edge(shape, body("b0")) for n in ("a", "b")}))
+    result, reported = legal(chain(edges={Id("shape", n): shape_edge(shape, body("b0")) for n in ("a", "b")}))
     assert [view.shape.name for view in result.shapes[body("b0")]] == ["skin", None]
-    assert said == ["note HX102 another shape is called 'skin' already; this one is written without a name"]
+    assert reported == ["note HX102 another shape is called 'skin' already; this one is written without a name"]
 
 
 # ---- actuators -----------------------------------------------------------------------------------------------------------------
@@ -477,15 +477,15 @@ def driven(kind: str) -> Mechanism:
 
 def test_by_default_native_actuators_stay_and_transmissions_are_motors() -> None:
     assert actuators(legal(driven("motor"))[0]) == {"a": ("motor", {})}
-    result, said = legal(driven("transmission"))
+    result, reported = legal(driven("transmission"))
     assert (actuators(result), len(list(result.edges(Drive)))) == ({"a": ("motor", {"ctrlrange": (-0.2, 0.2)})}, 1)
-    assert said == ["note HX101 1 transmission written as the actuators that the hardware interfaces name: 'j1' motor"]
+    assert reported == ["note HX101 1 transmission written as the actuators that the hardware interfaces name: 'j1' motor"]
 
 
 def test_chosen_actuators_replace_those_of_the_source() -> None:
-    result, said = legal(driven("motor"), Options("fixed", "velocity"))
+    result, reported = legal(driven("motor"), Options("fixed", "velocity"))
     assert actuators(result) == {"j1": ("velocity", {"kv": 25.0, "ctrlrange": (-4.0, 4.0)})}
-    assert said == ["note HX101 1 actuator of the source replaced by one velocity per driven dof, as asked"]
+    assert reported == ["note HX101 1 actuator of the source replaced by one velocity per driven dof, as asked"]
     assert actuators(legal(driven("motor"), Options("fixed", "none"))[0]) == {}
 
 
@@ -493,10 +493,10 @@ def test_chosen_actuators_replace_those_of_the_source() -> None:
 def test_an_actuator_that_drives_nothing_is_left_out(sign: int) -> None:
     drive = {Id("drive", "d"): Edge(Drive(), (Arc(Id("actuator", "a"), 1), Arc(joint("j1"), sign)))}
     mechanism = chain(LIMITED, edges=drive, vertices={Id("actuator", name): Actuator("motor") for name in "ab"})
-    result, said = legal(mechanism)
+    result, reported = legal(mechanism)
     idle = "b" if sign < 0 else "ab"
     assert actuators(result) == {name: ("motor", {}) for name in "ab" if name not in idle}
-    assert said == [f"warning HX104 actuator '{name}' drives nothing, and is left out" for name in idle]
+    assert reported == [f"warning HX104 actuator '{name}' drives nothing, and is left out" for name in idle]
     assert len(list(result.edges(Drive))) == (sign < 0)
 
 

@@ -43,8 +43,8 @@ def tensor_of(mechanism: Mechanism, target: str = "urdf") -> Tensor | None:
 
 def by_mujoco(*geoms: str, mass: float = 2.0) -> tuple[float, ...]:
     """The tensor that MuJoCo gives a body of evenly dense geoms of this mass together, in body axes."""
-    said = "".join(f"<geom density='1' {geom}/>" for geom in geoms)
-    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody><body>{said}</body></worldbody></mujoco>")
+    geoms_text = "".join(f"<geom density='1' {geom}/>" for geom in geoms)
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody><body>{geoms_text}</body></worldbody></mujoco>")
     turn = np.zeros(9)
     mujoco.mju_quat2Mat(turn, model.body_iquat[1])
     axes = turn.reshape(3, 3)

@@ -82,13 +82,13 @@ def compiled(mechanism: Mechanism) -> tuple[Any, list[str]]:
     ],
 )
 def test_a_tendon_that_mujoco_refuses_is_left_out_with_what_acts_on_it(kind: str, arcs: tuple[RobotArc, ...], why: str) -> None:
-    model, said = compiled(robot(Tendon(kind), *arcs))
+    model, reported = compiled(robot(Tendon(kind), *arcs))
     assert (model.ntendon, model.nu, model.nsensor) == (0, 0, 0)
-    assert said == [f"tendon 'cord' is left out: its path {why}"]
+    assert reported == [f"tendon 'cord' is left out: its path {why}"]
 
 
 @pytest.mark.parametrize(
-    ("tendon", "said", "span"),
+    ("tendon", "reported", "span"),
     [
         (Tendon(limits=Limits(0.1, 0.5)), [], (0.1, 0.5)),
         (Tendon(limits=Limits(None, 0.5)), ["has no lower limit; 1e+10 stands for the missing bound"], (-1e10, 0.5)),
@@ -96,14 +96,14 @@ def test_a_tendon_that_mujoco_refuses_is_left_out_with_what_acts_on_it(kind: str
         (Tendon(armature=-1.0), ["armature -1.0 is left out: it is negative, or the cable leads around a shape"], (0.0, 0.0)),
     ],
 )
-def test_numbers_that_mujoco_refuses_are_put_right(tendon: Tendon, said: list[str], span: tuple[float, float]) -> None:
+def test_numbers_that_mujoco_refuses_are_put_right(tendon: Tendon, reported: list[str], span: tuple[float, float]) -> None:
     model, messages = compiled(robot(tendon, *CABLE))
-    assert messages == [f"tendon 'cord': {text}" for text in said]
+    assert messages == [f"tendon 'cord': {text}" for text in reported]
     assert (model.ntendon, model.nu, tuple(model.tendon_range[0])) == (1, 1, span)
 
 
 def test_a_cable_around_a_shape_without_a_name_gives_it_one_and_has_no_armature() -> None:
-    model, said = compiled(robot(Tendon(armature=1.0), Arc(S), Arc(ROUND, 0, None, "wrap"), Arc(T, 0, None, "side"), Arc(T)))
-    assert said == ["tendon 'cord': armature 1.0 is left out: it is negative, or the cable leads around a shape"]
+    model, reported = compiled(robot(Tendon(armature=1.0), Arc(S), Arc(ROUND, 0, None, "wrap"), Arc(T, 0, None, "side"), Arc(T)))
+    assert reported == ["tendon 'cord': armature 1.0 is left out: it is negative, or the cable leads around a shape"]
     assert [model.geom(int(model.wrap_objid[1])).name, model.tendon_num[0]] == ["round", 3]
     assert model.geom_type[model.wrap_objid[1]] == mujoco.mjtGeom.mjGEOM_SPHERE

@@ -67,7 +67,7 @@ def test_what_is_no_value_is_left_out(fragment: str, tmp_path: Path) -> None:
     assert written(f'<gazebo reference="a">{fragment}</gazebo>', tmp_path) == written("", tmp_path)
 
 
-def test_fixed_joints_stay_whatever_is_said_of_them(tmp_path: Path) -> None:
+def test_fixed_joints_stay_whatever_a_fragment_asks_for(tmp_path: Path) -> None:
     fragment = '<gazebo reference="j"><preserveFixedJoint>false</preserveFixedJoint></gazebo>'
     assert '<joint name="j" type="fixed">' in written(fragment, tmp_path)
     assert "preserveFixedJoint" not in written(fragment, tmp_path)

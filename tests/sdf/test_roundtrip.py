@@ -1,4 +1,4 @@
-"""SDF that is read and written again says what it said, element by element and number by number."""
+"""SDF that is read and written again has what it had, element by element and number by number."""
 
 from __future__ import annotations
 

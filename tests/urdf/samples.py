@@ -38,7 +38,7 @@ def load(text: str | bytes, report: Report | None = None) -> Mechanism:
     return read(Source("robot.urdf", data), report if report is not None else Report()).mechanism
 
 
-def said(text: str | bytes) -> list[str]:
+def reported(text: str | bytes) -> list[str]:
     """What reading a text reports."""
     report = Report()
     load(text, report)

@@ -8,7 +8,7 @@ import re
 import pytest
 
 from hymeko_x.diagnostics import Refusal
-from tests.urdf.samples import LIMIT, TWO_LINKS, again, joint, load, robot, said, visual
+from tests.urdf.samples import LIMIT, TWO_LINKS, again, joint, load, reported, robot, visual
 
 pytestmark = pytest.mark.unread  # one test reads what each input reports; the others look at the robot
 LINK = '<link name="a"/>'
@@ -444,7 +444,7 @@ def ours(message: str) -> str:
 @pytest.mark.unread("HX005", "HX010")
 def test_bad_input_is_reported_with_its_place_and_what_is_done(case: str) -> None:
     text, expected = REPORTED[case]
-    assert [ours(message) for message in said(text)] == expected
+    assert [ours(message) for message in reported(text)] == expected
 
 
 @pytest.mark.parametrize("case", REPORTED)
@@ -458,7 +458,7 @@ def test_bad_input_is_the_same_robot_after_writing_it(case: str) -> None:
 @pytest.mark.unread  # generated or damaged input: any
 def test_what_is_written_is_well_formed(case: str) -> None:
     text, _ = REPORTED[case]
-    assert not [message for message in said(again(text)) if "HX005" in message]
+    assert not [message for message in reported(again(text)) if "HX005" in message]
 
 
 @pytest.mark.parametrize("case", REFUSED)
@@ -472,5 +472,5 @@ def test_hopeless_input_is_refused(case: str) -> None:
 
 @pytest.mark.parametrize("text", ["\ufeff" + robot(LINK), robot(f"{LINK}\r\n<foo/>"), ("\ufeff" + robot(LINK)).encode("utf-16-le")])
 def test_byte_order_marks_and_line_ends_of_other_systems_are_nothing_special(text: str | bytes) -> None:
-    assert said(text) == []
+    assert reported(text) == []
     assert load(again(text)) == load(text)

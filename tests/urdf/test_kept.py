@@ -109,7 +109,7 @@ def test_a_joint_without_a_child_is_kept_outside_of_the_tree() -> None:
     assert list(load(source).graph.edges) == []
 
 
-def test_what_most_fixed_joints_say_in_vain_is_said_once() -> None:
+def test_what_most_fixed_joints_say_in_vain_is_reported_once() -> None:
     vain = '<axis xyz="0 0 0"/>'
     body = TWO_LINKS + '<link name="c"/><link name="d"/>'
     body += joint(vain, "fixed") + joint(vain, "fixed", name="k", child="c") + joint('<axis xyz="0 0 1"/>', "fixed", name="l", child="d")

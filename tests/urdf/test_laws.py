@@ -1,4 +1,4 @@
-"""URDF text says everything that it claims to say, and every mechanism can be rewritten so that it can be said."""
+"""URDF text has everything that its profile allows, and every mechanism can be rewritten so that it fits into the profile."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from hymeko_x.rewrite import Options, choose, legalize
 from hymeko_x.source import Source
 from hymeko_x.testing import mechanisms, urdf_mechanisms
 from hymeko_x.testing.values import VECTORS
-from tests.urdf.samples import dump, load, said
+from tests.urdf.samples import dump, load, reported
 
 
 @given(urdf_mechanisms())
@@ -49,7 +49,7 @@ def test_every_mechanism_can_be_written_after_legalising_and_the_text_is_well_fo
     own_words = replace(mechanism, extras={})  # the generated ones are not XML
     legal = legalize(choose(own_words, Options(base=base), Report()), "urdf", Report())  # type: ignore[arg-type]
     text = write(legal, Options(), Report()).main
-    assert not [message for message in said(text) if "HX005" in message]
+    assert not [message for message in reported(text) if "HX005" in message]
     result = read(Source("r.urdf", text), Report()).mechanism
     assert {key for key, _ in legal.vertices(parts.Body)} == {key for key, _ in result.vertices(parts.Body)}
     assert legalize(legal, "urdf", Report()).graph == legal.graph

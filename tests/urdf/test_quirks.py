@@ -10,7 +10,7 @@ import pytest
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Body, Box, Inertial, InertialWritten, Mesh, NoShape, Shape
 from hymeko_x.ir.values import Written, pose_from_rpy, rotate_tensor
-from tests.urdf.samples import LIMIT, TWO_LINKS, again, dump, joint, load, robot, said, tags, visual
+from tests.urdf.samples import LIMIT, TWO_LINKS, again, dump, joint, load, reported, robot, tags, visual
 
 A, J = Id("body", "a"), Id("joint", "j")
 SPHERE = '<geometry><sphere radius="1"/></geometry>'
@@ -64,7 +64,7 @@ def test_a_link_called_world_is_a_link_like_any_other() -> None:
 
 def test_a_link_and_a_joint_may_share_a_name() -> None:
     source = robot(TWO_LINKS + joint(LIMIT, name="a"))
-    assert said(source) == []
+    assert reported(source) == []
     assert set(load(source).graph.edges) == {Id("joint", "a")}
 
 
@@ -90,7 +90,7 @@ def test_a_fixed_joint_that_mimics_keeps_its_mimic() -> None:
 
 def test_xmlns_xacro_in_a_plain_urdf_is_kept_and_says_nothing() -> None:
     source = robot('<link name="a"/>', ' name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"')
-    assert said(source) == []
+    assert reported(source) == []
     assert '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">' in again(source)
 
 

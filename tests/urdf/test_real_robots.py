@@ -46,8 +46,8 @@ def values(data: bytes) -> Counter[tuple[str, str | tuple[float, ...]]]:
     found: Counter[tuple[str, str | tuple[float, ...]]] = Counter()
     for element in root.iter("*"):
         path = "/".join([*(above.tag for above in reversed(list(element.iterancestors()))), element.tag])
-        said = [*((f"{path}@{name}", value) for name, value in element.items()), (path, (element.text or "").strip())]
-        found.update((where, read_numbers(value) or " ".join(value.split())) for where, value in said)
+        pairs = [*((f"{path}@{name}", value) for name, value in element.items()), (path, (element.text or "").strip())]
+        found.update((where, read_numbers(value) or " ".join(value.split())) for where, value in pairs)
     return found
 
 

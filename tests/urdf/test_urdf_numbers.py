@@ -51,18 +51,21 @@ _SAFETY = dict.fromkeys(("k_velocity", "k_position", "soft_lower_limit", "soft_u
 _SPHERE = '<geometry><sphere radius="1"/></geometry>'
 
 
-def _said(attributes: dict[str, str], name: str) -> str:
+def _with_value(attributes: dict[str, str], name: str) -> str:
     return " ".join(f"{key}={value}" for key, value in {**attributes, name: '"VALUE"'}.items())
 
 
 def _inertial(inside: str) -> str:
-    mass, tensor = "" if "<mass" in inside else '<mass value="1"/>', "" if "<inertia" in inside else f"<inertia {_said(_TENSOR, 'ixx')}/>"
+    mass, tensor = (
+        "" if "<mass" in inside else '<mass value="1"/>',
+        "" if "<inertia" in inside else f"<inertia {_with_value(_TENSOR, 'ixx')}/>",
+    )
     return _in(f"<inertial>{inside}{mass}{tensor.replace('VALUE', '1')}</inertial>")
 
 
 PLACES = (
     Place("value", _inertial('<mass value="VALUE"/>')),
-    *(Place(name, _inertial(f"<inertia {_said(_TENSOR, name)}/>")) for name in _TENSOR),
+    *(Place(name, _inertial(f"<inertia {_with_value(_TENSOR, name)}/>")) for name in _TENSOR),
     *(Place(name, _inertial(f'<origin {name}="VALUE"/>'), 3) for name in ("xyz", "rpy")),
     *(Place(name, visual(f'<origin {name}="VALUE"/>{_SPHERE}', tag), 3) for tag in ("visual", "collision") for name in ("xyz", "rpy")),
     Place("size", visual('<geometry><box size="VALUE"/></geometry>'), 3),
@@ -76,9 +79,9 @@ PLACES = (
     *(Place(name, _MOVES.replace("INSIDE", f'<origin {name}="VALUE"/>'), 3) for name in ("xyz", "rpy")),
     Place("quat_xyzw", _MOVES.replace("INSIDE", '<origin quat_xyzw="VALUE"/>'), 4, "1.1"),
     Place("xyz", _MOVES.replace("INSIDE", '<axis xyz="VALUE"/>'), 3),
-    *(Place(name, TWO_LINKS + joint(f"<limit {_said(_LIMITS, name)}/>"), version="1.2") for name in _LIMITS),
+    *(Place(name, TWO_LINKS + joint(f"<limit {_with_value(_LIMITS, name)}/>"), version="1.2") for name in _LIMITS),
     *(Place(name, _MOVES.replace("INSIDE", f'<dynamics {name}="VALUE"/>')) for name in ("damping", "friction")),
-    *(Place(name, _MOVES.replace("INSIDE", f"<safety_controller {_said(_SAFETY, name)}/>")) for name in _SAFETY),
+    *(Place(name, _MOVES.replace("INSIDE", f"<safety_controller {_with_value(_SAFETY, name)}/>")) for name in _SAFETY),
     *(Place(name, _MOVES.replace("INSIDE", f'<calibration {name}="VALUE"/>')) for name in ("rising", "falling", "reference_position")),
     *(Place(name, _LED.replace("INSIDE", f'<mimic joint="j" {name}="VALUE"/>')) for name in ("multiplier", "offset")),
 )
@@ -92,18 +95,18 @@ def is_readable(value: str, count: int) -> bool:
 
 @pytest.mark.parametrize("place", PLACES, ids=lambda place: place.id)
 @pytest.mark.unread("HX020", "HX028", "HX040")
-def test_an_odd_number_is_read_or_said_once_where_it_stands_and_kept(place: Place) -> None:
+def test_an_odd_number_is_read_or_reported_once_where_it_stands_and_kept(place: Place) -> None:
     wrong = []
     for odd in ODD:
         value, text = place.filled(odd)
         report = Report()
         mechanism = load(text, report)
-        said = [diagnostic for diagnostic in report if diagnostic.code.id == "HX020"]
-        at = [diagnostic.origin for diagnostic in said if diagnostic.origin is not None and diagnostic.origin.line == 2]
+        reported = [diagnostic for diagnostic in report if diagnostic.code.id == "HX020"]
+        at = [diagnostic.origin for diagnostic in reported if diagnostic.origin is not None and diagnostic.origin.line == 2]
         if is_readable(value, place.count):
-            wrong += [(odd, "is not read", str(line)) for line in said]
-        elif len(said) != 1 or len(at) != 1 or f" {place.attribute}> is '{value[:50]}" not in str(said[0]):
-            wrong.append((odd, "is not said once", *map(str, report)))
+            wrong += [(odd, "is not read", str(line)) for line in reported]
+        elif len(reported) != 1 or len(at) != 1 or f" {place.attribute}> is '{value[:50]}" not in str(reported[0]):
+            wrong.append((odd, "is not reported once", *map(str, report)))
         elif f"{place.attribute}={quoteattr(value)}" not in dump(mechanism):
             wrong.append((odd, "is not kept", dump(mechanism)))
         if diff(mechanism, load(dump(mechanism)), LAST_BITS):

@@ -110,7 +110,7 @@ def test_a_ball_becomes_three_hinges_about_x_y_and_z() -> None:
     ]
 
 
-def test_a_ball_that_urdf_said_is_left_alone() -> None:
+def test_a_ball_that_urdf_has_is_left_alone() -> None:
     mechanism = load(robot('<link name="a"/><link name="b"/><joint name="j" type="ball"><parent link="a"/><child link="b"/></joint>'))
     assert legal(mechanism) == mechanism
 
@@ -182,12 +182,12 @@ def test_a_capsule_becomes_a_cylinder_and_two_spheres() -> None:
 def test_what_is_seen_and_collides_is_rewritten_and_told_once(geometry: object) -> None:
     report = Report()
     after = legalize(shaped(geometry, Role.BOTH), "urdf", report)
-    assert [(said.code.id, said.element) for said in report] == [("HX101", "shape 's'")]
+    assert [(diagnostic.code.id, diagnostic.element) for diagnostic in report] == [("HX101", "shape 's'")]
     seen, touched = ([v for v in after.shapes[A] if v.shape.role is role] for role in (Role.VISUAL, Role.COLLISION))
     assert [(v.shape.geometry, v.pose, v.mesh) for v in seen] == [(v.shape.geometry, v.pose, v.mesh) for v in touched] != []
 
 
-def test_a_capsule_that_urdf_said_is_left_alone() -> None:
+def test_a_capsule_that_urdf_has_is_left_alone() -> None:
     mechanism = load(robot(visual('<geometry><capsule radius="1" length="2"/></geometry>')))
     assert legal(mechanism) == mechanism
 

@@ -52,9 +52,9 @@ def read_text(
     text: str, report: Report | None = None, files: Mapping[str, str | bytes] | None = None, name: str = "robot.usda"
 ) -> Mechanism:
     """The mechanism of a stage; without a report there may be no diagnostics."""
-    said = report if report is not None else Report()
-    mechanism = usd.read(Source(name, text.encode(), Texts(files or {})), said).mechanism
-    assert report is not None or [str(item) for item in said] == []
+    reported = report if report is not None else Report()
+    mechanism = usd.read(Source(name, text.encode(), Texts(files or {})), reported).mechanism
+    assert report is not None or [str(item) for item in reported] == []
     return mechanism
 
 
@@ -93,37 +93,37 @@ def parsed(stage: Any) -> Parsed:
     kinds = UsdPhysics.ObjectType
     bodies, joints, shapes = {}, {}, {}
     for kind, (paths, descriptions) in found.items():
-        for path, said in zip(paths, descriptions, strict=True):
+        for path, description in zip(paths, descriptions, strict=True):
             if kind == kinds.RigidBody:
-                bodies[str(path)] = (*said.position, *_quat(said.rotation))
+                bodies[str(path)] = (*description.position, *_quat(description.rotation))
             elif "Joint" in str(kind):
-                joints[str(path)] = _joint(stage, kind, said)
+                joints[str(path)] = _joint(stage, kind, description)
             elif "Shape" in str(kind):
-                shapes[str(path)] = (str(kind), *map(float, said.localPos), said.collisionEnabled)
+                shapes[str(path)] = (str(kind), *map(float, description.localPos), description.collisionEnabled)
     masses = {path: _mass(stage.GetPrimAtPath(path)) for path in bodies}
     return Parsed(bodies, joints, shapes, masses)
 
 
-def _joint(stage: Any, kind: Any, said: Any) -> tuple[object, ...]:
+def _joint(stage: Any, kind: Any, description: Any) -> tuple[object, ...]:
     """Kind, ends, frames and limits. Frames of a hinge or slide that differ by a turn about x, y, z alone mean the same: what
     counts is its axis in either body, and how the bodies stand to each other at zero."""
     ends: list[object] = []
     for body, position, turn in (
-        (said.body0, said.localPose0Position, said.localPose0Orientation),
-        (said.body1, said.localPose1Position, said.localPose1Orientation),
+        (description.body0, description.localPose0Position, description.localPose0Orientation),
+        (description.body1, description.localPose1Position, description.localPose1Orientation),
     ):
         ends += [str(body), tuple(position), _quat(turn)]
-    if hasattr(said, "axis") and str(said.axis) in "XYZ" and "Spherical" not in str(kind):
-        first, second = (Gf.Rotation(Gf.Quatd(turn)) for turn in (said.localPose0Orientation, said.localPose1Orientation))
-        axis = Gf.Vec3d(*(1.0 if letter == str(said.axis) else 0.0 for letter in "XYZ"))
+    if hasattr(description, "axis") and str(description.axis) in "XYZ" and "Spherical" not in str(kind):
+        first, second = (Gf.Rotation(Gf.Quatd(turn)) for turn in (description.localPose0Orientation, description.localPose1Orientation))
+        axis = Gf.Vec3d(*(1.0 if letter == str(description.axis) else 0.0 for letter in "XYZ"))
         zero = _quat((second.GetInverse() * first).GetQuat())
         ends = [*ends[:2], tuple(first.TransformDir(axis)), *ends[3:5], tuple(second.TransformDir(axis)), zero]
     limits: list[object] = []
-    if hasattr(said, "limit"):
-        limits = [said.limit.enabled and (said.limit.lower, said.limit.upper)]
-    if hasattr(said, "jointLimits"):
-        limits = [(str(item.first), item.second.enabled and (item.second.lower, item.second.upper)) for item in said.jointLimits]
-    return (str(kind), *ends, said.excludeFromArticulation, said.jointEnabled, *limits)
+    if hasattr(description, "limit"):
+        limits = [description.limit.enabled and (description.limit.lower, description.limit.upper)]
+    if hasattr(description, "jointLimits"):
+        limits = [(str(item.first), item.second.enabled and (item.second.lower, item.second.upper)) for item in description.jointLimits]
+    return (str(kind), *ends, description.excludeFromArticulation, description.jointEnabled, *limits)
 
 
 def _quat(quat: Any) -> tuple[float, ...]:

@@ -37,8 +37,8 @@ FLOOR = COLLIDER.format(name="floor")
 def group(name: str, members: str, filtered: str = "", more: str = "") -> str:
     """A group with the prims of these names, which does not collide with the groups of those names."""
     lists = (("collection:colliders:includes", members), ("physics:filteredGroups", filtered))
-    said = [f"rel {rel} = [{', '.join(f'</r/{target}>' for target in names.split())}]" for rel, names in lists if names]
-    return f'def PhysicsCollisionGroup "{name}"\n{{\n' + "\n".join((*said, more)) + "\n}\n"
+    written = [f"rel {rel} = [{', '.join(f'</r/{target}>' for target in names.split())}]" for rel, names in lists if names]
+    return f'def PhysicsCollisionGroup "{name}"\n{{\n' + "\n".join((*written, more)) + "\n}\n"
 
 
 def stage(*groups: str, bodies: str = "abc", colliders: int = 1, more: str = FLOOR) -> str:
@@ -96,7 +96,7 @@ GROUPS = st.lists(
 @given(GROUPS)
 def test_groups_touch_as_the_table_of_openusd_says(drawn: list[tuple[str, set[str], bool, str]]) -> None:
     """Of bodies that are all in some group; of the others it says nothing."""
-    said = [
+    written = [
         group(
             f"g{number}",
             members,
@@ -105,7 +105,7 @@ def test_groups_touch_as_the_table_of_openusd_says(drawn: list[tuple[str, set[st
         )
         for number, (members, others, inverted, merge) in enumerate(drawn)
     ]
-    text = stage(*said, bodies="a b c d", more="")
+    text = stage(*written, bodies="a b c d", more="")
     layer = Sdf.Layer.CreateAnonymous(".usda")
     layer.ImportFromString(text)
     table = UsdPhysics.CollisionGroup.ComputeCollisionGroupTable(Usd.Stage.Open(layer))
@@ -154,7 +154,7 @@ def test_groups_that_contradict_the_exclusions_that_are_left_are_written_in_pair
     assert groups_of(opened(written(more), tmp_path, "other.usda")) == {"/r/g": ["/r/g"]}
 
 
-def test_groups_of_some_colliders_of_a_body_are_kept_and_said(tmp_path: Path) -> None:
+def test_groups_of_some_colliders_of_a_body_are_kept_and_reported(tmp_path: Path) -> None:
     report = Report()
     source = stage(group("g", "a/box b", "g"), bodies="a b", colliders=2, more="")
     mechanism = read_text(source, report)
@@ -167,7 +167,7 @@ def test_groups_of_some_colliders_of_a_body_are_kept_and_said(tmp_path: Path) ->
 
 @pytest.mark.full
 @pytest.mark.unread("HX104")
-def test_groups_of_thousands_of_bodies_are_kept_and_said(tmp_path: Path) -> None:
+def test_groups_of_thousands_of_bodies_are_kept_and_reported(tmp_path: Path) -> None:
     names = [f"b{number}" for number in range(2_000)]
     report = Report()
     mechanism = read_text(stage(group("g", " ".join(names), "g"), bodies=" ".join(names), more=""), report)
@@ -178,7 +178,7 @@ def test_groups_of_thousands_of_bodies_are_kept_and_said(tmp_path: Path) -> None
     assert groups_of(opened(written(mechanism), tmp_path)) == {"/r/g": ["/r/g"]}
 
 
-def test_very_many_groups_are_kept_and_said() -> None:
+def test_very_many_groups_are_kept_and_reported() -> None:
     report = Report()
     mechanism = read_text(stage(*(group(f"g{number}", "a b", "g0") for number in range(600)), bodies="a b", more=""), report)
     assert apart(mechanism) == set()

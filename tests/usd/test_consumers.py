@@ -47,7 +47,7 @@ def test_a_mimic_is_led_by_the_first_of_its_leaders_and_comes_back_as_it_was(tmp
     assert diff(hand(), again(hand())) == ()
 
 
-def test_a_speed_limit_of_zero_is_said(tmp_path: Path) -> None:
+def test_a_speed_limit_of_zero_is_reported(tmp_path: Path) -> None:
     stage = opened(written(hand()), tmp_path)
     first = stage.GetPrimAtPath("/hand/joints/first")
     assert first.GetAttribute("newton:velocityLimit").Get() == 0.0

@@ -67,8 +67,8 @@ def test_every_stage_comes_back_from_what_is_written_of_it(real_robot: RealRobot
         before, after = Usd.Stage.Open(str(path)), opened(written(mechanism), tmp_path, f"{path.stem}.usda")
         source, result = parsed(before), parsed(after)
         found = [str(item) for item in diff(mechanism, again(mechanism))] + lost_properties(before, after)
-        said = {body: mass for body, mass in source.masses.items() if mass}  # others are computed, and written
-        found += [f"mass: {item}" for item in differing(said, {body: result.masses.get(body, ()) for body in said}).items()]
+        masses = {body: mass for body, mass in source.masses.items() if mass}  # others are computed, and written
+        found += [f"mass: {item}" for item in differing(masses, {body: result.masses.get(body, ()) for body in masses}).items()]
         for aspect in ("bodies", "joints", "shapes"):
             found += [f"{aspect}: {item}" for item in differing(getattr(source, aspect), getattr(result, aspect)).items()]
         if found:

@@ -22,7 +22,7 @@ def outcome(data: bytes, name: str = "robot.usdc", files: dict[str, str | bytes]
     try:
         usd.read(Source(name, data, Texts(files or {})), Report())
     except Refusal as refusal:
-        return "a path of ours is said" if "/tmp" in refusal.diagnostic.message else refusal.diagnostic.code.id
+        return "a path of ours is reported" if "/tmp" in refusal.diagnostic.message else refusal.diagnostic.code.id
     return "read"
 
 

@@ -21,7 +21,7 @@ from tests.usd.test_read import ENDS, PLACE, body, joint, robot, the_joint
 SCALE = '    double3 xformOp:scale = (0.1, 0.2, 0.4)\n    uniform token[] xformOpOrder = ["xformOp:scale"]\n'
 
 
-def said(stage: Any) -> dict[str, str]:
+def authored(stage: Any) -> dict[str, str]:
     """Every authored property with its value, and the types and schemas of every prim; where prims are apart."""
     found = {}
     for prim in stage.TraverseAll():
@@ -43,7 +43,7 @@ def missing(text: str, tmp_path: Path) -> dict[str, tuple[str, str | None]]:
     assert [str(item) for item in diff(mechanism, again(mechanism))] == []
     assert parsed(result).shapes == parsed(source).shapes
     assert parsed(result).joints == parsed(source).joints
-    before, after = said(source), said(result)
+    before, after = authored(source), authored(result)
     return {key: (value, after.get(key)) for key, value in before.items() if after.get(key) != value}
 
 

@@ -179,13 +179,13 @@ def test_variants_are_chosen_also_those_that_another_one_brings_forth(variants: 
 
 
 @pytest.mark.parametrize(
-    ("variants", "said"),
+    ("variants", "message"),
     [({"arm": "lng"}, "the variant set 'arm' has no variant 'lng'"), ({"leg": "long"}, "no prim has a variant set 'leg'")],
 )
-def test_a_variant_that_is_not_there_is_refused(variants: dict[str, str], said: str) -> None:
+def test_a_variant_that_is_not_there_is_refused(variants: dict[str, str], message: str) -> None:
     with pytest.raises(Refusal) as refusal:
         usd.read(replace(Source("robot.usda", VARIANTS.encode()), variants=variants), Report())
-    assert refusal.value.diagnostic.message == said
+    assert refusal.value.diagnostic.message == message
 
 
 def test_the_command_line_chooses_variants_and_layout(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

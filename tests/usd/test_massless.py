@@ -1,4 +1,4 @@
-"""Bodies without mass: 0 is what UsdPhysics calls unsaid."""
+"""Bodies without mass: 0 is what UsdPhysics takes for absent."""
 
 from __future__ import annotations
 

@@ -69,8 +69,8 @@ def test_several_meshes_in_several_colours_at_one_place_are_told_apart(tmp_path:
     (tmp_path / "home" / "c.dae").write_bytes(dae().replace(b"1 0 0 1", b"0.5 0.5 0 1"))
     hx.convert(source, stage, keep="inside")
     report = hx.convert(stage, tmp_path / "away" / "back.urdf", keep="inside").report
-    said = {item.element: "becomes the points" in item.message for item in report if item.code.id == "HX201"}
-    assert said == {"mesh 'a'": True, "mesh 'c'": True, "mesh 'b'": True}
+    reported = {item.element: "becomes the points" in item.message for item in report if item.code.id == "HX201"}
+    assert reported == {"mesh 'a'": True, "mesh 'c'": True, "mesh 'b'": True}
     files = {path.stem: path.read_text().count("\nf ") for path in (tmp_path / "away").rglob("*.obj")}
     assert files == {"a": 6, "b": 320, "c": 6}
 

@@ -115,7 +115,7 @@ def test_newton_leads_cables_through_our_stages_as_through_the_source(tmp_path: 
 
 
 def tendons_of(mechanism: Mechanism) -> list[tuple[object, ...]]:
-    """Tendons in order, their steps by the names of what they lead through; what is MuJoCo's default counts as unsaid."""
+    """Tendons in order, their steps by the names of what they lead through; what is MuJoCo's default counts as absent."""
     found = []
     for _, tendon, arcs in mechanism.edges(Tendon):
         steps = [(step_name(mechanism, arc), arc.role if arc.target.kind == "tendon" else "", arc.weight) for arc in arcs]

@@ -52,11 +52,11 @@ def the_joint(mechanism: Mechanism, name: str = "j"):  # type: ignore[no-untyped
         ("int xformOpOrder = 3", None),
     ],
 )
-def test_a_step_to_a_place_that_is_named_and_not_there_is_said(order: str, missing: str | None) -> None:
+def test_a_step_to_a_place_that_is_named_and_not_there_is_reported(order: str, missing: str | None) -> None:
     report = Report()
     read_text(robot(body("a", f"    double3 xformOp:translate = (1, 2, 3)\n    uniform {order}\n")), report=report)
-    said = [diagnostic.message for diagnostic in report if diagnostic.code is codes.UNDEFINED_REFERENCE]
-    assert said == ([] if missing is None else [f"xformOpOrder names {missing} not there; passed over"])
+    reported = [diagnostic.message for diagnostic in report if diagnostic.code is codes.UNDEFINED_REFERENCE]
+    assert reported == ([] if missing is None else [f"xformOpOrder names {missing} not there; passed over"])
 
 
 # ---- units -------------------------------------------------------------------------------------------------------------------
@@ -206,7 +206,7 @@ def test_gains_per_degree_become_gains_per_radian() -> None:
     assert dict(actuator.parameters) == {"kp": pytest.approx(360 / math.pi), "forcerange": (-7.0, 7.0)}  # type: ignore[union-attr]
 
 
-def test_a_joint_that_names_no_body_is_said_and_kept() -> None:
+def test_a_joint_that_names_no_body_is_reported_and_kept() -> None:
     report = Report()
     mechanism = read_text(robot(body("b"), joint("PhysicsFixedJoint", "j", ENDS)), report)
     assert [item.code for item in report] == [codes.UNDEFINED_REFERENCE]
@@ -272,7 +272,7 @@ def test_payloads_references_and_instances_are_composed() -> None:
     assert again(mechanism) == mechanism
 
 
-def test_a_missing_layer_is_said_and_the_rest_is_read() -> None:
+def test_a_missing_layer_is_reported_and_the_rest_is_read() -> None:
     report = Report()
     text = robot(body("a"), 'def "b" (\n    prepend references = @gone.usda@\n)\n{\n}\n')
     mechanism = read_text(text, report)
@@ -280,7 +280,7 @@ def test_a_missing_layer_is_said_and_the_rest_is_read() -> None:
     assert [key.name for key, _ in mechanism.vertices(Body)] == ["a"]
 
 
-def test_layers_that_refer_to_each_other_in_a_circle_are_said() -> None:
+def test_layers_that_refer_to_each_other_in_a_circle_are_reported() -> None:
     report = Report()
     text = robot(body("a"), 'def "b" (\n    prepend references = @other.usda@\n)\n{\n}\n')
     other = HEADER.replace('"robot"', '"x"') + 'def "x" (\n    prepend references = @other.usda@\n)\n{\n}\n'

@@ -46,7 +46,7 @@ def test_no_attribute_of_any_prim_is_lost(robot: Path, tmp_path: Path) -> None:
 
 
 def lost_properties(source: Usd.Stage, result: Usd.Stage) -> list[str]:
-    """What is typed may be said in other words; everything else is there as it was, at the same path."""
+    """What is typed may be written in other words; everything else is there as it was, at the same path."""
     lost = []
     for prim in source.Traverse():
         other = result.GetPrimAtPath(prim.GetPath())
@@ -59,8 +59,8 @@ def lost_properties(source: Usd.Stage, result: Usd.Stage) -> list[str]:
 
 
 def _is_default(prim: Usd.Prim, name: str) -> bool:
-    """Values that mean the same when they are not said: the reader takes them, and the writer leaves them out."""
-    said = prim.GetAttribute(name).Get() if prim.HasAttribute(name) else None
+    """Values that mean the same when they are absent: the reader takes them, and the writer leaves them out."""
+    value = prim.GetAttribute(name).Get() if prim.HasAttribute(name) else None
     if name in ("extent", "axis", "purpose", "physics:collisionEnabled", "primvars:displayColor", "physics:jointEnabled"):
         return True
-    return said in (0.0, math.inf, -math.inf, False, True) or name in ("size", "radius", "height")
+    return value in (0.0, math.inf, -math.inf, False, True) or name in ("size", "radius", "height")

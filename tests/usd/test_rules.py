@@ -35,8 +35,8 @@ def complaints_about(robot: Path, layout: Literal["single", "layered"], folder: 
         stage = folder / suffix[1:] / f"{robot.stem}{suffix}"
         stage.parent.mkdir()
         hx.convert(robot, stage, layout=layout, keep="inside")
-        if said := complaints(stage):
-            found[suffix] = said
+        if reported := complaints(stage):
+            found[suffix] = reported
     return found
 
 

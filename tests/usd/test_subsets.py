@@ -134,7 +134,7 @@ def test_a_stage_with_subsets_is_written_as_it_was(tmp_path: Path) -> None:
     assert families(out) == ["nonOverlapping"]
 
 
-def test_faces_of_polygons_are_their_triangles_and_stay_as_they_were_said(tmp_path: Path) -> None:
+def test_faces_of_polygons_are_their_triangles_and_stay_as_they_were_written(tmp_path: Path) -> None:
     robot = read_text(stage(subset("2, 0"), subset("1", "blue", "tip"), faces=POLYGONS))
     assert shown(robot) == {"part": ((0, 1, 3), "red"), "tip": ((2,), "blue")}
     assert again(robot) == robot
@@ -150,7 +150,7 @@ def test_a_family_that_covers_the_mesh_is_still_called_a_partition(tmp_path: Pat
 
 
 @pytest.mark.parametrize(
-    ("subsets", "kept", "said"),
+    ("subsets", "kept", "message"),
     [
         ((subset("1, 8"),), "int[] indices = [1, 8]", "has a face that the mesh does not have"),
         ((subset("-1"),), "int[] indices = [-1]", "has a face that the mesh does not have"),
@@ -161,12 +161,14 @@ def test_a_family_that_covers_the_mesh_is_still_called_a_partition(tmp_path: Pat
     ],
 )
 @pytest.mark.unread("HX203")
-def test_what_is_no_subset_that_shows_a_material_is_kept_as_written(subsets: tuple[str, ...], kept: str, said: str | None) -> None:
+def test_what_is_no_subset_that_shows_a_material_is_kept_as_written(subsets: tuple[str, ...], kept: str, message: str | None) -> None:
     report = Report()
     robot = read_text(stage(*subsets), report)
     assert "part" not in shown(robot)
     assert sum(kept in extra.text for found in robot.extras.values() for extra in found) == 1
-    assert [item.message for item in report] == ([] if said is None else [f"subset '/robot/body/hull/part' {said}; it is kept as written"])
+    assert [item.message for item in report] == (
+        [] if message is None else [f"subset '/robot/body/hull/part' {message}; it is kept as written"]
+    )
     assert written(robot).decode().count(kept) == 1
     assert again(robot) == robot
 

@@ -120,7 +120,7 @@ def test_a_tendon_is_written_as_mujocos_schema_names_it(robot: Path, tmp_path: P
     stage = tmp_path / "cables.usda"
     hx.convert(robot, stage, keep="inside")
     found = Usd.Stage.Open(str(stage))
-    assert said(found.GetPrimAtPath("/cables/tendons/cable")) == {
+    assert authored(found.GetPrimAtPath("/cables/tendons/cable")) == {
         "mjc:type": "spatial",
         "mjc:path": ["top", "drum", "s", "post", "t"],
         "mjc:path:indices": [0, 1, 2, 2, 3, 4, 0, 4],
@@ -139,9 +139,9 @@ def test_a_tendon_is_written_as_mujocos_schema_names_it(robot: Path, tmp_path: P
         "mjc:springlength": [0.3, 0.4],
         "mjc:solimplimit": [0.8, 0.99, 0.001, 0.5, 2.0],
     }
-    led = said(found.GetPrimAtPath("/cables/tendons/led"))
+    led = authored(found.GetPrimAtPath("/cables/tendons/led"))
     assert (led["mjc:path:segments"], led["mjc:path:divisors"]) == ([1, 1], [1.0, 3.0])
-    assert said(found.GetPrimAtPath("/cables/tendons/sum")) == {
+    assert authored(found.GetPrimAtPath("/cables/tendons/sum")) == {
         "mjc:type": "fixed",
         "mjc:path": ["turn", "bend", "lift"],
         "mjc:path:indices": [0, 1, 2],
@@ -169,7 +169,7 @@ def test_a_site_of_a_cable_is_an_invisible_ball_and_others_have_no_geometry(robo
     }
 
 
-def said(prim: Any) -> dict[str, object]:
+def authored(prim: Any) -> dict[str, object]:
     """What a prim says, by its names; targets by what people call them."""
     found: dict[str, object] = {}
     for attribute in prim.GetAuthoredAttributes():

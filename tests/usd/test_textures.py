@@ -304,7 +304,7 @@ def Xform "r" {
 """
 
 
-def test_an_image_that_is_said_more_of_is_typed_and_stays_as_it_is(tmp_path: Path) -> None:
+def test_an_image_with_further_attributes_is_typed_and_stays_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "s.usda").write_text(OTHERS)
     (tmp_path / "wood.png").write_bytes(image())
     hx.convert(tmp_path / "s.usda", tmp_path / "back.usda")

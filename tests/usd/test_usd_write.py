@@ -115,7 +115,7 @@ def test_a_root_link_that_stands_for_the_world_is_no_body(tmp_path: Path) -> Non
       <joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint></robot>"""
     mechanism = urdf.read(Source("r.urdf", text.encode()), Report()).mechanism
     joints = parsed(opened(written(mechanism), tmp_path)).joints
-    assert {path: said[:2] for path, said in joints.items()} == {
+    assert {path: values[:2] for path, values in joints.items()} == {
         "/r/joints/j": ("FixedJoint", ""),
     }
     assert diff(mechanism, again(mechanism)) == ()
@@ -233,6 +233,6 @@ def test_a_residue_in_the_header_leaves_the_rest_of_the_text_as_it_was(comment: 
     layer.ImportFromString(written(arm()).decode())
     layer.comment = comment
     whole = layer.ExportToString()
-    carried = text_with_residue(layer, whole, 'said "so"\n)\n').decode()
-    layer.customLayerData = {**layer.customLayerData, RESIDUE: 'said "so"\n)\n'}
+    carried = text_with_residue(layer, whole, 'text "so"\n)\n').decode()
+    layer.customLayerData = {**layer.customLayerData, RESIDUE: 'text "so"\n)\n'}
     assert carried == layer.ExportToString()

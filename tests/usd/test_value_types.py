@@ -59,7 +59,7 @@ def test_vectors_are_the_same_in_any_type(kind: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "said",
+    "attribute",
     [
         'string physics:localPos0 = "abc"',
         'string[] physics:localPos0 = ["a", "b", "c"]',
@@ -70,9 +70,9 @@ def test_vectors_are_the_same_in_any_type(kind: str) -> None:
         'token physics:localRot0 = "abcd"',
     ],
 )
-def test_what_has_other_numbers_or_none_is_reported_and_not_used(said: str) -> None:
+def test_what_has_other_numbers_or_none_is_reported_and_not_used(attribute: str) -> None:
     report = Report()
-    robot = read("", said, report)
+    robot = read("", attribute, report)
     assert [found.code for found in report if found.severity == Severity.ERROR] == [codes.BAD_VALUE]
     assert frame(robot) == IDENTITY
     assert hx.loads(hx.dumps(robot, "usd"), "usd", lenient=True).mechanism == robot

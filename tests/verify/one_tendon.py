@@ -114,8 +114,8 @@ def _parameter(quantity: str, name: str) -> Planter:
         key = draw(st.sampled_from([SUM, CABLE]))
         tendon, arcs = _of(robot, key)
         factor = draw(st.none() | _BY)
-        said = [(word, value if word != name else _scaled(value, factor)) for word, value in tendon.parameters]
-        parameters = tuple((word, value) for word, value in said if value is not None)
+        changed = [(word, value if word != name else _scaled(value, factor)) for word, value in tendon.parameters]
+        parameters = tuple((word, value) for word, value in changed if value is not None)
         return _change(quantity, key, _with(robot, key, replace(tendon, parameters=parameters), arcs))
 
     return plant

@@ -272,7 +272,7 @@ MJCF = [
 ALL = [*URDF, *MJCF]
 
 ONLY_URDF = ("velocity limit", "fixed joint renamed")
-SAID_BY_BOTH = [planted for planted in URDF if planted.what not in ONLY_URDF]
+IN_BOTH = [planted for planted in URDF if planted.what not in ONLY_URDF]
 
 
 def mutated(planted: Planted) -> str:
@@ -305,7 +305,7 @@ def test_a_planted_change_is_found_where_it_is(planted: Planted, written: Write)
     assert planted.at in failed[planted.check]
 
 
-@pytest.mark.parametrize("planted", SAID_BY_BOTH, ids=lambda planted: planted.id)
+@pytest.mark.parametrize("planted", IN_BOTH, ids=lambda planted: planted.id)
 def test_a_planted_change_is_found_in_another_format(planted: Planted, written: Write) -> None:
     """The same change, seen from the MJCF file."""
     verdict = verify(written("mjcf", ARM_MJCF), written("urdf", mutated(planted)), samples=20)

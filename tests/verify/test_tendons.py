@@ -93,7 +93,7 @@ def test_a_tendon_of_a_stage_is_read_in_its_units(written: Write) -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "instead", "why"),
+    ("given", "instead", "why"),
     [
         ("[0, 1, 2, 0, 2]", "[0, 1, 2, 0, 3]", "has 3 targets and other indices"),
         ("[1, 4]", "[1]", "has 5 steps, 5 segments, and 1 divisors"),
@@ -104,9 +104,9 @@ def test_a_tendon_of_a_stage_is_read_in_its_units(written: Write) -> None:
         ("path = </robot/turn>", "path = </robot/arm>", "leads to /robot/arm, which is no joint that one coordinate moves"),
     ],
 )
-def test_an_invalid_path_is_reported_and_missing(said: str, instead: str, why: str, written: Write) -> None:
-    assert said in STAGE
-    whole, broken = written("usd", STAGE), written("usd", STAGE.replace(said, instead))
+def test_an_invalid_path_is_reported_and_missing(given: str, instead: str, why: str, written: Write) -> None:
+    assert given in STAGE
+    whole, broken = written("usd", STAGE), written("usd", STAGE.replace(given, instead))
     (note,) = model_of(broken).notes
     assert note.endswith(f"is left out: its path {why}")
     (failed,) = verify(whole, broken, samples=2).failed
@@ -127,14 +127,14 @@ MJCF = """<mujoco><worldbody><site name="hook" pos="0 0 1"/><body name="arm"><jo
 def test_a_spring_without_lengths_is_one_with_that_at_rest(written: Write, tmp_path: Path) -> None:
     silent = written("mjcf", MJCF.replace("SPRING", ""))
     length = float(mujoco.MjModel.from_xml_path(str(silent)).tendon_lengthspring[0, 0])
-    said = written("mjcf", MJCF.replace("SPRING", f'springlength="{length!r}"'))
+    stated = written("mjcf", MJCF.replace("SPRING", f'springlength="{length!r}"'))
     other = written("mjcf", MJCF.replace("SPRING", f'springlength="{length + 1e-6!r}"'))
     stage = tmp_path / "silent.usda"
     hx.convert(silent, stage)
     assert model_of(stage).tendons[0].spring == RELAXED
-    for first in (silent, said, stage):
+    for first in (silent, stated, stage):
         assert verify(first, silent, samples=2).is_same
-        assert verify(first, said, samples=2).is_same
+        assert verify(first, stated, samples=2).is_same
         assert [check.quantity for check in verify(first, other, samples=2).failed] == ["tendons, spring lengths"]
 
 

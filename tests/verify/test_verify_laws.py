@@ -113,8 +113,8 @@ def assert_found(robot: Mechanism, change: Change, pairs: list[tuple[str, str]],
 def finds(verdict: Verdict, change: Change) -> bool:
     """Whether the check that the change is for says where it is. USD spells names in its own way."""
     names = {_spelled(name) for name in change.names}
-    said = [_spelled(check.at) for check in verdict.failed if check.quantity == change.quantity]
-    return verdict.verdict == "different" and any(name in words for words in said for name in names)
+    reported = [_spelled(check.at) for check in verdict.failed if check.quantity == change.quantity]
+    return verdict.verdict == "different" and any(name in words for words in reported for name in names)
 
 
 def _spelled(words: str) -> str:

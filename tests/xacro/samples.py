@@ -59,7 +59,7 @@ class Folder:
         self.put("r.xacro", robot(body))
         return expand(self.source(**how), Report(), limits)  # type: ignore[arg-type]
 
-    def said(self, body: str, **how: object) -> list[str]:
+    def reported(self, body: str, **how: object) -> list[str]:
         """The diagnostics of ``r.xacro`` with this body: everything reported, or the refusal, without hints."""
         report = Report()
         try:

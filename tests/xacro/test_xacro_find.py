@@ -81,7 +81,7 @@ def test_a_folder_with_a_shorter_form_of_the_name_is_taken_with_a_warning(folder
     data = f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n{text}\n</robot>'.encode()
     place = folder.path / "src/arm_kr6/urdf/r.xacro"
     read(Source(str(place), data, DiskFiles(place.parent)), report)
-    assert [str(said) for said in report] == [
+    assert [str(diagnostic) for diagnostic in report] == [
         f"{place}:2: warning[HX052]: there is no package 'arm_kr6_support'; the folder '{folder.path}/src/arm_kr6' is taken for it\n"
         "  hint: say where it is: --package arm_kr6_support=DIR"
     ]
@@ -89,15 +89,15 @@ def test_a_folder_with_a_shorter_form_of_the_name_is_taken_with_a_warning(folder
 
 def test_a_guess_that_lacks_the_file_is_a_missing_package(folder: Folder) -> None:
     (folder.path / "arm").mkdir()
-    said = folder.refusal('<xacro:include filename="$(find arm_description)/urdf/arm.xacro"/>')
-    assert (said.code, said.message) == (codes.PACKAGE_NOT_FOUND, "the package 'arm_description' was not found")
+    refusal = folder.refusal('<xacro:include filename="$(find arm_description)/urdf/arm.xacro"/>')
+    assert (refusal.code, refusal.message) == (codes.PACKAGE_NOT_FOUND, "the package 'arm_description' was not found")
 
 
 def test_a_missing_package_is_named_with_its_place_and_what_to_pass(folder: Folder) -> None:
-    said = folder.refusal("\n" + INCLUDE)
-    assert (said.code, said.message) == (codes.PACKAGE_NOT_FOUND, "the package 'arm' was not found")
-    assert str(said.origin) == f"{folder.path}/r.xacro:3"
-    assert said.hint == (
+    refusal = folder.refusal("\n" + INCLUDE)
+    assert (refusal.code, refusal.message) == (codes.PACKAGE_NOT_FOUND, "the package 'arm' was not found")
+    assert str(refusal.origin) == f"{folder.path}/r.xacro:3"
+    assert refusal.hint == (
         "say where it is: --package arm=DIR (looked for: a package.xml with that name and a folder 'arm' above or beside the file, "
         "ROS_PACKAGE_PATH, AMENT_PREFIX_PATH)"
     )

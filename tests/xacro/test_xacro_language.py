@@ -52,19 +52,19 @@ def test_an_element_comes_from_its_line_in_the_macro_or_the_included_file(folder
 
 
 @pytest.mark.unread("HX020", "HX023", "HX042")
-def test_what_is_said_of_the_urdf_points_at_the_xacro_file(folder: Folder) -> None:
+def test_what_is_reported_of_the_urdf_points_at_the_xacro_file(folder: Folder) -> None:
     inertia = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
-    said = folder.said(
+    reported = folder.reported(
         f'<xacro:macro name="arm" params="n">\n  <link name="${{n}}">\n    <inertial><mass value="x"/>{inertia}</inertial>\n  </link>\n'
         '</xacro:macro>\n<xacro:arm n="a"/>\n<xacro:arm n="a"/>'
     )
-    assert [line.split(": ")[0:2] for line in said] == [
+    assert [line.split(": ")[0:2] for line in reported] == [
         ["r.xacro:4", "error[HX020]"],
         ["r.xacro:3", "error[HX023]"],
         ["r.xacro:4", "error[HX020]"],
         ["r.xacro:1", "warning[HX042]"],
     ]
-    assert "(the other one: r.xacro:3)" in said[1]
+    assert "(the other one: r.xacro:3)" in reported[1]
 
 
 def test_a_refusal_of_the_urdf_reader_points_at_the_xacro_file(folder: Folder) -> None:
@@ -107,13 +107,13 @@ def test_arguments_have_defaults_and_the_user_overrides_them(folder: Folder) -> 
 
 
 def test_an_argument_without_value_is_named_with_what_to_pass(folder: Folder) -> None:
-    said = folder.refusal('<link name="a"/>\n<link name="$(arg side)_leg"/>')
-    assert (said.code, said.message, said.origin) == (
+    refusal = folder.refusal('<link name="a"/>\n<link name="$(arg side)_leg"/>')
+    assert (refusal.code, refusal.message, refusal.origin) == (
         codes.ARGUMENT_MISSING,
         "the argument 'side' is needed here and has no value",
         Origin(str(folder.path / "r.xacro"), 3),
     )
-    assert said.hint == "give it one: --arg side:=VALUE"
+    assert refusal.hint == "give it one: --arg side:=VALUE"
 
 
 def test_a_default_that_comes_too_late_is_shown(folder: Folder) -> None:
@@ -126,12 +126,12 @@ def test_a_default_that_comes_too_late_is_shown(folder: Folder) -> None:
     )
 
 
-def test_a_given_argument_that_the_file_never_mentions_is_said(folder: Folder) -> None:
+def test_a_given_argument_that_the_file_never_mentions_is_reported(folder: Folder) -> None:
     text = '<xacro:arg name="side" default="left"/>\n<link name="$(arg side)$(eval side)"/>'
-    assert folder.said(text, arguments={"sdie": "right"}) == [
+    assert folder.reported(text, arguments={"sdie": "right"}) == [
         "r.xacro: warning[HX059]: the argument 'sdie' has no effect: the file does not mention it"
     ]
-    assert folder.said(text, arguments={"side": "right"}) == []
+    assert folder.reported(text, arguments={"side": "right"}) == []
 
 
 def test_yaml_is_read_beside_the_file_that_asks_for_it(folder: Folder) -> None:
@@ -147,15 +147,15 @@ def robot_with(text: str) -> str:
 
 def test_a_missing_file_is_named_where_it_is_asked_for(folder: Folder) -> None:
     folder.put("parts/p.xacro", robot_with('\n<xacro:include filename="deep.xacro"/>'))
-    said = folder.refusal('<xacro:include filename="parts/p.xacro"/>')
-    assert (said.code, said.message) == (
+    refusal = folder.refusal('<xacro:include filename="parts/p.xacro"/>')
+    assert (refusal.code, refusal.message) == (
         codes.INCLUDE_NOT_FOUND,
         "the file 'parts/deep.xacro' cannot be read: no such file, or none that may be read",
     )
-    assert str(said.origin) == f"{folder.path}/parts/p.xacro:3"
-    assert said.excerpt == (f"  from {folder.path}/r.xacro:2: <xacro:include>",)
-    said = folder.refusal("<link name=\"${xacro.load_yaml('no.yaml')}\"/>")
-    assert (said.code, said.message) == (
+    assert str(refusal.origin) == f"{folder.path}/parts/p.xacro:3"
+    assert refusal.excerpt == (f"  from {folder.path}/r.xacro:2: <xacro:include>",)
+    refusal = folder.refusal("<link name=\"${xacro.load_yaml('no.yaml')}\"/>")
+    assert (refusal.code, refusal.message) == (
         codes.INCLUDE_NOT_FOUND,
         "the file 'no.yaml' cannot be read: no such file, or none that may be read",
     )
@@ -171,32 +171,32 @@ def test_an_optional_include_may_be_missing_and_a_pattern_names_several_files(fo
 
 def test_the_environment_is_closed_unless_a_variable_is_passed_on(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ARM", "secret")
-    assert folder.said('<link name="$(env ARM)"/>') == [
+    assert folder.reported('<link name="$(env ARM)"/>') == [
         "r.xacro:2: error[HX057]: the environment variable 'ARM' is needed here, and the environment is closed to files"
     ]
-    assert folder.said('<link name="$(optenv ARM left arm)"/>') == [
+    assert folder.reported('<link name="$(optenv ARM left arm)"/>') == [
         "r.xacro:2: note[HX057]: the environment variable 'ARM' is not passed on; its default 'left arm' is used"
     ]
     in_eval = '<xacro:property name="p" value="env(\'ARM\')"/><link name="$(eval ${p})"/>'
-    assert folder.said(in_eval)[0].startswith("r.xacro:2: error[HX057]")
+    assert folder.reported(in_eval)[0].startswith("r.xacro:2: error[HX057]")
     assert body("left") in folder.read('<link name="$(env ARM)"/>', environment={"ARM": "left"}).graph.vertices
 
 
 def test_a_failure_shows_how_xacro_got_there(folder: Folder) -> None:
-    said = folder.refusal(
+    refusal = folder.refusal(
         '<xacro:macro name="hand">\n  <link name="${nmae}"/>\n</xacro:macro>\n'
         '<xacro:macro name="arm">\n  <xacro:hand/>\n</xacro:macro>\n<xacro:arm/>'
     )
-    assert said.code == codes.EXPANSION_FAILED
-    assert said.message == "xacro: name 'nmae' is not defined when evaluating expression 'nmae'"
+    assert refusal.code == codes.EXPANSION_FAILED
+    assert refusal.message == "xacro: name 'nmae' is not defined when evaluating expression 'nmae'"
     place = folder.path / "r.xacro"
-    assert str(said.origin) == f"{place}:3"
-    assert said.excerpt == (f"  from {place}:6: <xacro:hand>", f"  from {place}:8: <xacro:arm>")
+    assert str(refusal.origin) == f"{place}:3"
+    assert refusal.excerpt == (f"  from {place}:6: <xacro:hand>", f"  from {place}:8: <xacro:arm>")
 
 
 @pytest.mark.unread("HX045")
-def test_warnings_of_xacro_and_messages_of_the_file_are_said_once_each(folder: Folder) -> None:
-    assert folder.said(
+def test_warnings_of_xacro_and_messages_of_the_file_are_reported_once_each(folder: Folder) -> None:
+    assert folder.reported(
         '<link name="a">\n  <visual name="${xacro.warning(\'old\')}">${xacro.message("hi")}</visual>\n</link>\n'
         '<xacro:property name="pi" value="3"/>'
     )[:3] == [
@@ -222,7 +222,10 @@ def test_what_is_no_urdf_is_refused_by_name(text: str, found: str) -> None:
 
 @pytest.mark.unread("HX045")
 def test_a_library_of_macros_is_no_robot(folder: Folder) -> None:
-    assert folder.said('<xacro:macro name="leg"><link name="a"/></xacro:macro>')[0] == "r.xacro: warning[HX055]: the expansion has no links"
+    assert (
+        folder.reported('<xacro:macro name="leg"><link name="a"/></xacro:macro>')[0]
+        == "r.xacro: warning[HX055]: the expansion has no links"
+    )
 
 
 @pytest.mark.parametrize("name", ["<stdin>", "folder/r.XACRO"])

@@ -75,8 +75,8 @@ def members(text: bytes) -> list[object]:
 
     def of(element: etree._Element) -> tuple[object, ...]:
         inside = (of(child) for child in sorted(element.iterchildren("*"), key=lambda child: str(child.tag)))
-        said = sorted((name, value(text)) for name, text in element.items() if value(text) != DEFAULTS.get(name))
-        return element.tag, said, value(element.text or ""), [child for child in inside if child != ("origin", [], "", [])]
+        written = sorted((name, value(text)) for name, text in element.items() if value(text) != DEFAULTS.get(name))
+        return element.tag, written, value(element.text or ""), [child for child in inside if child != ("origin", [], "", [])]
 
     root = etree.fromstring(text)
     return [sorted(root.items()), *(of(element) for element in root.iterchildren("*"))]

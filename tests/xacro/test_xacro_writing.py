@@ -35,10 +35,10 @@ from tests.urdf.samples import load, robot
 def library(text: bytes) -> minidom.Document:
     """What xacro itself makes of a file, without a warning; not as text, in which minidom loses line breaks of attributes."""
     xacro.init_stacks("robot.xacro")
-    with contextlib.redirect_stderr(io.StringIO()) as said:
+    with contextlib.redirect_stderr(io.StringIO()) as printed:
         document = xacro.parse(text.decode())
         xacro.process_doc(document)
-    assert said.getvalue() == ""
+    assert printed.getvalue() == ""
     return document
 
 
@@ -124,8 +124,8 @@ ODD = (
 )
 @pytest.mark.unread("HX005", "HX010")
 def test_every_text_comes_back_as_a_text_that_varies_and_one_that_does_not(text: str) -> None:
-    said = etree.Element("x", a=text, b="the same in all of them, and long enough")
-    quoted = etree.tostring(said).decode()
+    element = etree.Element("x", a=text, b="the same in all of them, and long enough")
+    quoted = etree.tostring(element).decode()
     names = ("one", "two", "three", "four", "five")
     gazebo = "".join(f'<gazebo reference="{name}"><sensor><fixed>{quoted}</fixed></sensor></gazebo>' for name in names)
     varied = "".join(

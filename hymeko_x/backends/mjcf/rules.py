@@ -161,7 +161,7 @@ def _drop_stale_keyframes(mechanism: Mechanism, context: Context) -> Mechanism:
     for reason, names in stale.items():
         which = f"keyframe {names[0]} has" if len(names) == 1 else f"{len(names)} keyframes ({', '.join(names[:2])}, ...) have"
         left = "it is" if len(names) == 1 else "they are"
-        context.report.warn(codes.NOT_SAID, f"{which} {reason}; {left} left out", origin)
+        context.report.warn(codes.NOT_REPRESENTED, f"{which} {reason}; {left} left out", origin)
     return kept
 
 

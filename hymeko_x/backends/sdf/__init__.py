@@ -45,7 +45,7 @@ def _model_config(sheet: SdfSheet, options: Options, report: Report) -> dict[str
     if not (options.package_layout and options.beside):
         return {}
     if sheet.has_several_models:
-        report.warn(codes.NOT_SAID, "model.config is not written: it is for a file with one model")
+        report.warn(codes.NOT_REPRESENTED, "model.config is not written: it is for a file with one model")
         return {}
     config = Tag("model", {})
     config.add("name").children.append(escaped(sheet.mechanism.name))

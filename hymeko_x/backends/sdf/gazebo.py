@@ -86,7 +86,7 @@ def _with_namespaces(extra: Extra, declared: Mapping[str, str], context: Context
         if prefix in ("xml", "xmlns") or f"xmlns:{prefix}=" in extra.text:
             continue
         if prefix not in declared:
-            context.report.warn(codes.NOT_SAID, f"'{extra.text[:60]}' is left out: its file does not declare the prefix '{prefix}'")
+            context.report.warn(codes.NOT_REPRESENTED, f"'{extra.text[:60]}' is left out: its file does not declare the prefix '{prefix}'")
             return None
         name = re.match(r"<[^\s/>]+", extra.text)
         assert name is not None

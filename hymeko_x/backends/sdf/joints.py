@@ -45,7 +45,7 @@ def joint_tag(key: Id, scope: str, sheet: SdfSheet) -> Tag:
     word = own if own is not None and words.JOINT_TYPES.get(own, words.JOINT_TYPES["fixed"]).dofs == _kinds(joint) else usual
     if word is None:
         message = f"{key} has dofs that SDF cannot represent"
-        raise refuse(codes.NOT_SAID, message, sheet.mechanism.origin(key), element=str(key))
+        raise refuse(codes.NOT_REPRESENTED, message, sheet.mechanism.origin(key), element=str(key))
     tag = Tag("joint", {"name": sheet.name(key, scope), "type": word})
     base = parent if parent != WORLD and not sheet.from_sdf and parent.name.startswith(scope) else None
     names = _end_names(key, parent, child, scope, sheet)

@@ -95,7 +95,7 @@ class _Closer:
         return root
 
     def _leave_out(self, key: Id, why: str) -> None:
-        self._context.report.warn(codes.NOT_SAID, f"{key} {why}; it is left out", self._mechanism.origin(key), element=str(key))
+        self._context.report.warn(codes.NOT_REPRESENTED, f"{key} {why}; it is left out", self._mechanism.origin(key), element=str(key))
         self._gone.append(key)
 
     def _hold(self, key: Id, loop: Loop, first: _End, second: _End, roots: tuple[Id, Id]) -> bool:

@@ -59,7 +59,7 @@ def control_joints(mechanism: Mechanism, context: Context) -> Mechanism:
     if left:
         names = listed([f"'{key.name}'" for key in left], _SHOWN)
         context.report.warn(
-            codes.NOT_SAID, f"{counted(len(left), 'actuator')} that no plugin of Gazebo stands for: {names}", element=str(left[0])
+            codes.NOT_REPRESENTED, f"{counted(len(left), 'actuator')} that no plugin of Gazebo stands for: {names}", element=str(left[0])
         )
     if not plugins:
         return mechanism

@@ -46,7 +46,7 @@ def _type(view: JointView, sheet: UrdfSheet) -> str:
     word = own if own is not None and _fits(own, view.joint, usual) else usual
     if word is None or view.child_pose != IDENTITY or not _is_standard(view.joint):
         message = f"{view.id} has dofs or a frame that URDF cannot represent"
-        raise refuse(codes.NOT_SAID, message, sheet.mechanism.origin(view.id), element=str(view.id))
+        raise refuse(codes.NOT_REPRESENTED, message, sheet.mechanism.origin(view.id), element=str(view.id))
     return word
 
 

@@ -79,7 +79,7 @@ def _add_geometry(tag: Tag, view: ShapeView, sheet: UrdfSheet) -> None:
             pass
         case other:
             raise refuse(
-                codes.NOT_SAID, f"{view.id} is a {type(other).__name__.lower()}, which URDF cannot represent", element=str(view.id)
+                codes.NOT_REPRESENTED, f"{view.id} is a {type(other).__name__.lower()}, which URDF cannot represent", element=str(view.id)
             )
 
 

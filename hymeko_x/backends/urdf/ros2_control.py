@@ -59,7 +59,7 @@ def declare_ros2_control(mechanism: Mechanism, context: Context) -> Mechanism:
     if left:
         names = listed([f"'{key.name}'" for key in left], _SHOWN)
         message = f"{counted(len(left), 'actuator')} without a single joint and a command of its own, and without <{words.TAG}>: {names}"
-        context.report.warn(codes.NOT_SAID, message, element=str(left[0]))
+        context.report.warn(codes.NOT_REPRESENTED, message, element=str(left[0]))
     moved = _moved(seen, commands, context)
     if not commands and not moved and not combined:
         return mechanism
@@ -86,7 +86,7 @@ def _moved(mechanism: Mechanism, commands: dict[Id, list[Command]], context: Con
         names = listed([f"'{key.name}' ({kinds[key]})" for key in left], _SHOWN)
         why = "of other kinds, and of joints that are fixed or follow others"
         message = f"{counted(len(left), 'transmission')} of ROS 1 ({why}) stay as they are, and ROS 2 does not read them: {names}"
-        context.report.warn(codes.NOT_SAID, message, element=str(left[0]))
+        context.report.warn(codes.NOT_REPRESENTED, message, element=str(left[0]))
     return moved
 
 

@@ -48,7 +48,7 @@ def _parsed(blocks: list[tuple[Id, Extra]], report: Report) -> list[Parsed]:
     for key, extra in blocks:
         alone = parsed_layer(f"#usda 1.0\n{extra.text}\n")
         if alone is None or len(alone.rootPrims) != 1:
-            report.warn(codes.NOT_SAID, f"an extra of {key} is no USD text; it is left out", element=str(key))
+            report.warn(codes.NOT_REPRESENTED, f"an extra of {key} is no USD text; it is left out", element=str(key))
         found.append((alone, alone.rootPrims[0]) if alone is not None and len(alone.rootPrims) == 1 else None)
     return found
 
@@ -56,7 +56,7 @@ def _parsed(blocks: list[tuple[Id, Extra]], report: Report) -> list[Parsed]:
 def _restore_stage(sheet: UsdSheet, extra: Extra, report: Report) -> None:
     header = parsed_layer(extra.text)
     if header is None:
-        report.warn(codes.NOT_SAID, "an extra of the stage is no USD text; it is left out")
+        report.warn(codes.NOT_REPRESENTED, "an extra of the stage is no USD text; it is left out")
         return
     for name in header.pseudoRoot.ListInfoKeys():
         if name not in ("primChildren", "subLayers"):

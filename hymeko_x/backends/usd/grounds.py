@@ -25,7 +25,7 @@ def report_planes_that_move(mechanism: Mechanism, context: Context) -> Mechanism
     for key, body in planes.items():
         if body not in standing:
             message = f"{key} is a plane on a body that moves; UsdPhysics has planes for contact on static and kinematic bodies alone"
-            context.report.warn(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
+            context.report.warn(codes.NOT_REPRESENTED, message, mechanism.origin(key), element=str(key))
     return mechanism
 
 

@@ -33,7 +33,7 @@ def drop_loops_without_bodies(mechanism: Mechanism, context: Context) -> Mechani
     frames = {view.mounted: view.body for views in mechanism.mounts.values() for view in views}
     gone = [key for key, _, arcs in mechanism.edges(Loop) if all(frames.get(arc.target, arc.target) == WORLD for arc in arcs)]
     for key in gone:
-        context.report.warn(codes.NOT_SAID, f"{key} is left out: it joins no body", mechanism.origin(key), element=str(key))
+        context.report.warn(codes.NOT_REPRESENTED, f"{key} is left out: it joins no body", mechanism.origin(key), element=str(key))
     return mechanism.replace(without=gone)
 
 

@@ -94,7 +94,7 @@ class UsdBuilder(Builder, dict=True):
     def check_transform(self, prim: Prim, transform: Transform) -> None:
         """Report what a pose and a scale cannot represent of the transform of a prim."""
         if transform.flaw:
-            self.warn(prim, codes.NOT_SAID, f"{prim.path} {transform.flaw}")
+            self.warn(prim, codes.NOT_REPRESENTED, f"{prim.path} {transform.flaw}")
 
     def new_id(self, prim: Prim, kind: str, fallback: str | None = None) -> Id:
         """A fresh id for the element that a prim represents, after the name that it has."""

@@ -87,7 +87,9 @@ def read_collision_groups(prims: list[Prim], builder: UsdBuilder) -> None:
     try:
         pairs = _pairs(groups, builder)
     except _TooMany as error:
-        builder.warn(groups[0], codes.NOT_SAID, f"collision groups with {error} are kept as written; no other format represents them")
+        builder.warn(
+            groups[0], codes.NOT_REPRESENTED, f"collision groups with {error} are kept as written; no other format represents them"
+        )
         return
     if not pairs:
         return
@@ -126,7 +128,7 @@ def _pairs(groups: list[Prim], builder: UsdBuilder) -> list[tuple[Id, Id]]:
         found += combinations(here, 2) if here is there else ((a, b) if a < b else (b, a) for a, b in product(here, there))
     if partly is not None:
         message = f"collision groups separate only some colliders of {partly[0]} and {partly[1]}; that is kept as written"
-        builder.report.note(codes.NOT_SAID, message, builder.origin_of(groups[0]), element=groups[0].path)
+        builder.report.note(codes.NOT_REPRESENTED, message, builder.origin_of(groups[0]), element=groups[0].path)
     return [(a, b) for (_, a), (_, b) in sorted(found)]
 
 

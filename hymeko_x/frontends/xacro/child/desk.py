@@ -114,5 +114,5 @@ class NoticeStream(io.TextIOBase):
         *lines, self._line = (self._line + text).split("\n")
         for line in lines:
             if line.strip() and not line.startswith(self._PLACES):
-                self._desk.notice("said", current_place(), text=line)
+                self._desk.notice("printed", current_place(), text=line)
         return len(text)
