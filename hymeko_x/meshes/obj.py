@@ -5,7 +5,8 @@ Of the corners of a polygon only their points count, and where a material has an
 
 from __future__ import annotations
 
-from itertools import pairwise
+import re
+from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -25,6 +26,8 @@ _NORMAL = 2
 """The place of the normal among the numbers of a corner."""
 _CONTINUED = (b"\\\n", b"\\\r")
 """The end of a line that continues in the next one."""
+_RUNS = re.compile(rb"(?:v .*\n)++|(?:vt.*\n)++|(?:vn.*\n)++|(?:f .*\n)++|.*\n")
+"""Lines in a row that begin with the same word, or any other line."""
 _WIDTHS = (3, 6)
 """A point, or a point with a colour."""
 _UV_WIDTHS = (2, 3)
@@ -33,7 +36,7 @@ _NORMAL_WIDTHS = (3, 3)
 
 
 class _Lines(NamedTuple):
-    """The lines of a file by their first word, without it; ``uses`` has for each material the number of its first polygon."""
+    """The lines of a file by their first word, in runs; ``uses`` has for each material the number of its first run of polygons."""
 
     points: list[bytes]
     places: list[bytes]
@@ -79,22 +82,17 @@ def _lines_of(data: bytes) -> _Lines | None:
     if any(end in data for end in _CONTINUED):
         return None
     found = _Lines([], [], [], [], [], [])
-    for line in data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n"):
-        word = line[:2]
-        if word == b"f ":
-            found.faces.append(line[2:])
-        elif word == b"v ":
-            found.points.append(line[2:])
-        elif word == b"vt":
-            found.places.append(line[2:])
-        elif word == b"vn":
-            found.normals.append(line[2:])
+    runs = {b"v ": found.points, b"vt": found.places, b"vn": found.normals, b"f ": found.faces}
+    for run in _RUNS.findall(data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") + b"\n"):
+        word = run[:2]
+        if word in runs:
+            runs[word].append(run)
         elif word[:1] in (b" ", b"\t") or word in (b"v\t", b"f\t"):
             return None
-        elif line.startswith(b"usemtl"):
-            found.uses.append((len(found.faces), _name(line, b"usemtl")))
-        elif line.startswith(b"mtllib"):
-            found.libraries.append(_name(line, b"mtllib"))
+        elif run.startswith(b"usemtl"):
+            found.uses.append((len(found.faces), _name(run, b"usemtl")))
+        elif run.startswith(b"mtllib"):
+            found.libraries.append(_name(run, b"mtllib"))
     return found
 
 
@@ -102,23 +100,29 @@ def _name(line: bytes, word: bytes) -> str:
     return line.removeprefix(word).strip().decode("utf-8", "replace")
 
 
-def words_of(rows: list[bytes]) -> tuple[NDArray[np.uint8], NDArray[np.intp], NDArray[np.intp]]:
-    """The rows as one text, the places in it where words begin, and the number of words of each row."""
-    text = np.frombuffer(b" " + b" ".join(rows) + b" ", dtype=np.uint8)
+def words_of(lines: bytes) -> tuple[NDArray[np.uint8], NDArray[np.intp], NDArray[np.intp]]:
+    """The text of lines, with a line break before the first one too, the places where words begin, and the number of words of each line."""
+    text = np.frombuffer(lines, dtype=np.uint8)
     is_blank = text <= ord(" ")
     starts = np.flatnonzero(is_blank[:-1] > is_blank[1:]) + 1
-    ends = np.cumsum([1, *(len(row) + 1 for row in rows)])
-    return text, starts, np.diff(np.searchsorted(starts, ends))
+    return text, starts, np.diff(np.searchsorted(starts, np.flatnonzero(text == ord("\n"))))
 
 
-def _rows(rows: list[bytes], widths: tuple[int, int]) -> NDArray[np.float64] | None:
-    """As many numbers of each row as the lesser width; None where rows have other widths, or several."""
-    if not rows:
+def _rows(runs: list[bytes], widths: tuple[int, int]) -> NDArray[np.float64] | None:
+    """As many numbers of each line as the lesser width; None where lines have other widths, or several."""
+    if not runs:
         return None
-    text, _, counts = words_of(rows)
+    lines = _without_word(runs)
+    _, _, counts = words_of(lines)
     if counts[0] not in widths or (counts != counts[0]).any():
         return None
-    return numbers_in(text.tobytes()).reshape(len(rows), int(counts[0]))[:, : widths[0]]
+    return numbers_in(lines).reshape(len(counts), int(counts[0]))[:, : widths[0]]
+
+
+def _without_word(runs: list[bytes]) -> bytes:
+    """The lines of runs of one word without it, and with a line break before the first one."""
+    lines = b"\n" + b"".join(runs)
+    return lines.replace(lines[:3], b"\n")
 
 
 # ---- polygons ----------------------------------------------------------------------------------------------------------------
@@ -136,29 +140,30 @@ class _Polygons(NamedTuple):
     """Polygons of one material, and their numbers in the file."""
 
     material: str
-    rows: list[bytes]
+    runs: list[bytes]
     order: list[int]
 
 
 def _by_material(lines: _Lines, uses: list[tuple[int, str]]) -> list[_Polygons]:
     """The polygons by material, and by the form of the first corner of each use; those before the first use have no name."""
     found: dict[tuple[str, str], _Polygons] = {}
+    numbers = [*accumulate((run.count(b"\n") for run in lines.faces), initial=0)]
     for (start, name), (end, _) in pairwise([(0, ""), *uses, (len(lines.faces), "")]):
         if start < end:
             some = found.setdefault((name, _form(lines.faces[start])), _Polygons(name, [], []))
-            some.rows.extend(lines.faces[start:end])
-            some.order.extend(range(start, end))
+            some.runs.extend(lines.faces[start:end])
+            some.order.extend(range(numbers[start], numbers[end]))
     return list(found.values())
 
 
-def _form(row: bytes) -> str:
-    """The fields that the first corner of a polygon has: ``x-x`` for ``12//7``."""
-    return "".join("x" if field else "-" for corner in row.split(None, 1)[:1] for field in corner.split(b"/"))
+def _form(run: bytes) -> str:
+    """The fields that the first corner of a run of polygons has: ``x-x`` for ``12//7``."""
+    return "".join("x" if field else "-" for corner in run.split(b"\n", 1)[0].split(None, 2)[1:2] for field in corner.split(b"/"))
 
 
 def _group(some: _Polygons, entry: MaterialEntry, tables: _Tables, *, mapped: bool) -> MaterialGroup | None:
     """The triangles of one material; an image without texture coordinates is left out. None where they are not plain."""
-    corners = _corners(some.rows)
+    corners = _corners(_without_word(some.runs))
     if corners is None:
         return None
     sizes, numbers, has_places = corners
@@ -184,20 +189,19 @@ def _of_corners(
     return used_rows(table, rows) if _are_rows(rows, table) else None
 
 
-def _corners(rows: list[bytes]) -> tuple[NDArray[np.intp], NDArray[np.int64], bool] | None:
+def _corners(lines: bytes) -> tuple[NDArray[np.intp], NDArray[np.int64], bool] | None:
     """The number of corners of each polygon, the numbers of all corners (from 0), and whether the second of them are places in an image.
 
     None where the corners have different numbers of strokes, which are ``1``, ``1/2``, ``1//3`` or ``1/2/3``.
 
     Raises: ValueError where there is anything but numbers.
     """
-    text, starts, sizes = words_of(rows)
+    text, starts, sizes = words_of(lines)
     strokes = np.diff(np.searchsorted(np.flatnonzero(text == ord("/")), np.append(starts, len(text))))
     if (strokes != strokes[:1]).any():
         return None
-    data = text.tobytes()
-    numbers = numbers_in(data.replace(b"//", b"/0/").replace(b"/", b" "), np.int64)
-    return sizes, numbers.reshape(len(starts), -1) - 1, bool(strokes[:1].any()) and b"//" not in data
+    numbers = numbers_in(lines.replace(b"//", b"/0/").replace(b"/", b" "), np.int64)
+    return sizes, numbers.reshape(len(starts), -1) - 1, bool(strokes[:1].any()) and b"//" not in lines
 
 
 def _are_rows(faces: NDArray[Any], table: NDArray[Any]) -> bool:
