@@ -258,7 +258,7 @@ FOR_TARGET = Code(
     "something was added or changed for the program that takes the output",
     "--for names this program, or an option asks for what it needs. docs/targets.md lists what each program expects, and why.",
 )
-NOT_REPRESENTED = Code("HX104", "the target has no word for this", "The target cannot represent this, and nothing comes near.")
+NOT_REPRESENTED = Code("HX104", "the target cannot represent this", "The target has no element or attribute for this, nor anything near it.")
 
 # ---- HX2xx: assets ---------------------------------------------------------------------------------------------------
 ASSET_NOT_FOUND = Code(

@@ -222,8 +222,9 @@ def _corners(lines: _Obj) -> tuple[NDArray[np.intp], NDArray[np.int64]]:
     """The number of corners of each face, and for each corner the rows of its point, its place and its normal, -1 for none."""
     if not lines.faces:
         return np.zeros(0, dtype=np.intp), np.zeros((0, 3), dtype=np.int64)
-    text, starts, sizes = words_of(b"\n%b\n" % b"\n".join([row for row, *_ in lines.faces]))
-    data, strokes = text.tobytes(), np.flatnonzero(text == ord("/"))
+    data = b"\n%b\n" % b"\n".join([row for row, *_ in lines.faces])
+    text, starts, sizes = words_of(data)
+    strokes = np.flatnonzero(text == ord("/"))
     counts = np.diff(np.searchsorted(strokes, np.append(starts, len(text))))
     if b"-" not in data and (counts == counts[:1]).all() and not (text[strokes + 1] <= ord(" ")).any():
         numbers = numbers_in(data.replace(b"//", b"/0/").replace(b"/", b" "), np.int64).reshape(len(starts), -1)[:, :3] - 1

@@ -294,9 +294,9 @@ def coupled(leader: Id, *coefficients: float, joints: tuple[Joint, ...] = (hinge
 
 
 def test_a_coupling_to_a_joint_that_does_not_exist_is_left_out() -> None:
-    result, reported = legal(coupled(joint("nobody"), 0.0, 1.0))
+    result, reported = legal(coupled(joint("missing"), 0.0, 1.0))
     assert not list(result.edges(Coupling))
-    assert reported == ["warning HX104 coupling 'c' is left out: joint 'nobody' does not exist"]
+    assert reported == ["warning HX104 coupling 'c' is left out: joint 'missing' does not exist"]
 
 
 def test_a_coupling_to_a_fixed_joint_stays_and_holds_the_follower() -> None:

@@ -96,7 +96,7 @@ GROUPS = st.lists(
 @given(GROUPS)
 @example([("a", set(), False, "m"), ("a", set(), True, ""), ("b", {"0", "1", "3"}, True, "m"), ("a", set(), False, "")])
 def test_groups_touch_as_the_table_of_openusd_says(drawn: list[tuple[str, set[str], bool, str]]) -> None:
-    """Of bodies that are all in some group; of the others it says nothing.
+    """Pairs of bodies that are both in some group; the table has no entries for other bodies.
 
     The table is that of the same groups with those of one merge name in a row: of others OpenUSD reads entries of the wrong pairs.
     """
