@@ -189,6 +189,17 @@ def test_without_its_image_a_file_has_its_colour_and_a_warning(tmp_path: Path) -
     ]
 
 
+def test_of_a_mesh_that_only_collides_no_image_is_missed(tmp_path: Path) -> None:
+    source = lay_obj(tmp_path)
+    (tmp_path / "wood.png").unlink()
+    source.write_text(source.read_text().replace("visual", "collision"))
+    report = hx.convert(source, tmp_path / "r.usda", keep="inside").report
+    stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
+    (mesh,) = meshes(stage)
+    assert len(UsdGeom.Mesh(mesh).GetFaceVertexCountsAttr().Get()) == 4
+    assert [entry.message for entry in report.diagnostics if "image" in entry.message] == []
+
+
 def test_a_damaged_image_is_one_warning(tmp_path: Path) -> None:
     source = lay_obj(tmp_path)
     (tmp_path / "wood.png").write_bytes(image()[:45])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import field
 from msgspec.structs import replace
@@ -36,14 +36,21 @@ _FEW_TURNED = 0.1
 """The share of triangles whose normals may point to the other side without a note: folds of thin parts often do."""
 
 
+class _Use(NamedTuple):
+    """What shapes need of a mesh: whether one is seen, and whether one shows an image that it does not have from the file."""
+
+    is_shown: bool
+    is_mapped: bool
+
+
 class _Packing(Builder, kw_only=True):
-    """One run: its input, and the elements that it adds to the mechanism. ``known`` are the files that were read, by uri."""
+    """One run: its input, and the elements that it adds to the mechanism. ``known`` are the files that were read, by uri and use."""
 
     mechanism: Mechanism
     shelf: Shelf
     files: Files
     report: Report
-    known: dict[tuple[str, bool], ColouredMesh] = field(default_factory=dict)
+    known: dict[tuple[str, _Use], ColouredMesh] = field(default_factory=dict)
     materials: dict[tuple[Rgba | None, bytes | None], Id | None] = field(default_factory=dict)
 
 
@@ -59,24 +66,24 @@ def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Repor
     for key, mesh in mechanism.vertices(Mesh):
         if mesh.uri is None or mesh.vertices:
             continue
-        is_mapped = any(view.material in textured for view in users.get(key, []))
-        painted = run.known.get((mesh.uri, is_mapped)) or _read(run, key, mesh, own_reader, is_mapped=is_mapped)
+        views = users.get(key, [])
+        use = _Use(any(view.shape.role is not Role.COLLISION for view in views), any(view.material in textured for view in views))
+        painted = run.known.get((mesh.uri, use)) or _read(run, key, mesh, own_reader, use)
         if painted is not None:
-            run.known[mesh.uri, is_mapped] = painted
-            _pack(run, key, mesh, painted, users.get(key, []))
+            run.known[mesh.uri, use] = painted
+            _pack(run, key, mesh, painted, views, use)
     packed = _with_textures(mechanism, shelf, files, report)
     return run.added_to(packed) if run.vertices else packed
 
 
-def _pack(run: _Packing, key: Id, mesh: Mesh, painted: ColouredMesh, views: list[ShapeView]) -> None:
+def _pack(run: _Packing, key: Id, mesh: Mesh, painted: ColouredMesh, views: list[ShapeView], use: _Use) -> None:
     """The mesh, and for the eye the colours of the file, which count where it has some, as in RViz."""
     from hymeko_x.meshes.submesh import Submesh
 
     part, appearances = painted
     seen = [view for view in views if view.shape.role is Role.VISUAL]
-    is_shown = any(view.shape.role is not Role.COLLISION for view in views)
-    run.vertices[key] = LoadedMesh(mesh.uri, mesh.scale, mesh.name, loaded=part if is_shown else Submesh(part.points, part.faces))
-    if is_shown:
+    run.vertices[key] = LoadedMesh(mesh.uri, mesh.scale, mesh.name, loaded=part if use.is_shown else Submesh(part.points, part.faces))
+    if use.is_shown:
         _note_turned_normals(run, key, mesh, part)
     shown = [(appearance, _material(run, key, appearance), rows) for appearance, rows in appearances] if seen else []
     for view in seen:
@@ -136,12 +143,9 @@ def _placed_image(run: _Packing, mesh: Id, appearance: Appearance, image: bytes)
     return run.shelf.place("textures", file_stem(appearance.file) or appearance.name or mesh.name, suffix, data)
 
 
-def _read(run: _Packing, key: Id, mesh: Mesh, own_reader: MeshReader | None, *, is_mapped: bool) -> ColouredMesh | None:
-    """The triangles of a file, with its own appearances unless an engine reads it in its own way.
-
-    ``is_mapped``: a shape of the mesh shows an image that it does not have from the file.
-    """
-    from hymeko_x.meshes.reader import read_colours, read_mapped
+def _read(run: _Packing, key: Id, mesh: Mesh, own_reader: MeshReader | None, use: _Use) -> ColouredMesh | None:
+    """The triangles of a file, with its own appearances where they are seen, unless an engine reads it in its own way."""
+    from hymeko_x.meshes.reader import read_colours, read_mapped, read_whole
     from hymeko_x.meshes.submesh import ColouredMesh, Unreadable
 
     found = read_file(run.files, mesh.uri or "")
@@ -158,8 +162,10 @@ def _read(run: _Packing, key: Id, mesh: Mesh, own_reader: MeshReader | None, *, 
         own = None if own_reader is None else own_reader(data, suffix_of(path))
         if own is not None:
             return ColouredMesh(own)
+        if not use.is_shown:
+            return ColouredMesh(read_whole(data, suffix_of(path), fetch))
         painted = read_colours(data, suffix_of(path), fetch, miss=miss)
-        return ColouredMesh(read_mapped(data, suffix_of(path), fetch)) if is_mapped and not painted.appearances else painted
+        return ColouredMesh(read_mapped(data, suffix_of(path), fetch)) if use.is_mapped and not painted.appearances else painted
     except Unreadable as error:
         _warn(run, key, codes.ASSET_UNREADABLE, f"'{mesh.uri}' cannot be read: {error}")
         return None
