@@ -22,6 +22,9 @@ TABLES = {
     "a lattice in double precision": DICE.integers(-9, 10, (20000, 3)).astype(np.float64),
     "powers of two": 2.0 ** DICE.integers(-60, 60, (20000, 3)),
     "with texture coordinates": DICE.integers(0, 4, (5000, 5)) / 3.0,
+    "points and their mirror images": np.concatenate(
+        [DICE.normal(size=(9000, 3)).astype(np.float32).astype(np.float64) * side for side in (1, -1)]
+    ),
     "zeros of both signs": DICE.choice([0.0, -0.0], (100, 3)),
 }
 
@@ -42,8 +45,8 @@ def test_what_is_not_a_number_equals_nothing() -> None:
 
 
 def test_rows_that_are_made_to_share_their_slots_are_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    def one_slot(rows: NDArray[Any], odd: np.uint64) -> NDArray[np.uint64]:
-        del odd
+    def one_slot(rows: NDArray[Any], turn: int) -> NDArray[np.uint64]:
+        del turn
         return np.zeros(len(rows), dtype=np.uint64)
 
     monkeypatch.setattr("hymeko_x.meshes.weld._keys", one_slot)
