@@ -15,12 +15,24 @@ if TYPE_CHECKING:
     from hymeko_x.ir.values import Vec3
 
 
+_BLOCK = 8192
+"""Triangles whose normals are computed together: all of a large mesh at once would take twice the time, most of it for new memory."""
+
+
 def face_normals(points: NDArray[np.float32], corners: NDArray[Any]) -> NDArray[np.float32]:
     """The unit normal of each triangle (n x 3, single precision), by the right hand; z where a triangle has none.
 
     ``points`` is (m, 3), ``corners`` the rows of ``points`` of all triangles, flat.
     """
     columns = points.T.astype(np.float64, order="C")
+    normals = np.empty((len(corners) // 3, 3), dtype=np.float32)
+    for start in range(0, len(normals), _BLOCK):
+        normals[start : start + _BLOCK] = _normals_of(columns, corners[3 * start : 3 * (start + _BLOCK)]).T
+    return normals
+
+
+def _normals_of(columns: NDArray[np.float64], corners: NDArray[Any]) -> NDArray[np.float64]:
+    """The normals (3 x n) of triangles of points (3 x m)."""
     first, second, third = (columns.take(corners[start::3], axis=1) for start in range(3))
     second -= first
     third -= first
@@ -29,8 +41,7 @@ def face_normals(points: NDArray[np.float32], corners: NDArray[Any]) -> NDArray[
     lengths = np.sqrt((normals * normals).sum(axis=0))
     flat = ~(lengths > 0.0)
     normals[:, flat], lengths[flat] = [[0.0], [0.0], [1.0]], 1.0
-    normals /= lengths
-    return normals.T.astype(np.float32, order="C")
+    return np.asarray(normals / lengths)
 
 
 @remembered

@@ -79,11 +79,13 @@ def obj_groups(
 
 def _lines_of(data: bytes) -> _Lines | None:
     """The lines of a file; None where some continue in the next one, or begin with a blank."""
-    if any(end in data for end in _CONTINUED):
+    if b"\\" in data and any(end in data for end in _CONTINUED):
         return None
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     found = _Lines([], [], [], [], [], [])
     runs = {b"v ": found.points, b"vt": found.places, b"vn": found.normals, b"f ": found.faces}
-    for run in _RUNS.findall(data.replace(b"\r\n", b"\n").replace(b"\r", b"\n") + b"\n"):
+    for run in _RUNS.findall(data + b"\n"):
         word = run[:2]
         if word in runs:
             runs[word].append(run)
